@@ -24,7 +24,7 @@ class BottomUpBuilder {
 
  private:
   static constexpr std::uint32_t kMixed = ~0u, kSingle = ~0u;
-  static constexpr std::size_t kGrain = 4096;  // groups that justify a task
+  static constexpr std::size_t kGrain = 4096;  // minimum number of groups per parallel task
   static constexpr int kReach = 8;             // neighbours compared on each side
 
   struct Group {

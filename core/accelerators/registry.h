@@ -6,6 +6,8 @@
 
 namespace orrery {
 
+// Returns all acceleration structures, in the order of the schemas. The span is valid until the program
+// exits. Thread-safe.
 std::span<const AcceleratorType> accelerator_types();
 
 }  // namespace orrery

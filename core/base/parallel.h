@@ -31,8 +31,9 @@ class TsanFence {
 #endif
 };
 
-// Calls act(0), ..., act(count - 1) in any order, in chunks of at least half of `grain` calls. Each chunk
-// starts with an interruption point.
+// Calls act(0), ..., act(count - 1) in any order, several at once, in chunks of at least half of `grain`
+// calls. Each chunk starts with an interruption point. Once a call throws, no more chunks start. One of the
+// exceptions is rethrown here after the running chunks have ended.
 template <class Act>
 void parallel_for_each(std::size_t count, std::size_t grain, const Act& act) {
   using Range = tbb::blocked_range<std::size_t>;
@@ -52,7 +53,8 @@ void parallel_for_each(std::size_t count, std::size_t grain, const Act& act) {
   from_workers.acquire();
 }
 
-// Calls both functions, on two threads if available.
+// Calls both functions, on two threads if available. If one throws, the other may not start. One exception is
+// rethrown here after the running function has ended.
 template <class First, class Second>
 void both_in_parallel(const First& first, const Second& second) {
   TsanFence to_workers, from_workers;
@@ -68,6 +70,7 @@ void both_in_parallel(const First& first, const Second& second) {
   from_workers.acquire();
 }
 
+// Sorts by operator<, which must not throw. Equal elements may change their order. Not interruptible.
 template <class Iterator>
 void sort_in_parallel(Iterator begin, Iterator end) {
 #ifdef __SANITIZE_THREAD__

@@ -6,6 +6,8 @@
 
 namespace orrery {
 
+// Returns all camera types, in the order of the schemas. The span is valid until the program exits.
+// Thread-safe.
 std::span<const CameraType> camera_types();
 
 }  // namespace orrery

@@ -4,7 +4,8 @@
 #include "core/base/task_scope.h"
 #include "core/image/files.h"
 
-// Shared helpers of the image codecs. Decoders check the header's size before they decode.
+// Shared helpers of the image codecs. Decoders check the header's size before they decode, and throw
+// InputError.
 namespace orrery {
 
 Image decode_png(std::span<const std::byte> bytes, std::size_t max_pixels);

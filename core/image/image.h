@@ -18,7 +18,7 @@ enum class PixelFormat {
 // Image with row 0 at the top. Threads may write different pixels concurrently.
 class Image {
  public:
-  // Does not initialise the pixels.
+  // Does not initialise the pixels. Throws std::bad_alloc.
   Image(int width, int height, PixelFormat format);
 
   int width() const { return width_; }

@@ -13,13 +13,13 @@
 //   Vec3<N> intensity;                                 at the source; or whole_intensity()
 //   RoundingLimit rounding() const;                    optional, of Point<double>
 //   LightBounds bounds() const;                        of Point<double>
-//   Vec3d max_incident(double distance) const;              of Point<double>; see LightSet
+//   Vec3d max_incident(double distance) const;         of Point<double>; see LightSet
 //   Arrival<N> arrive(const Vec3<N>& position) const;  light that arrives at a surface point
 // and, if path tracing samples its extent,
-//   MaskOf<N> extended() const;                        whether it has an extent
-//   Drawn<N> draw(const Vec3<N>& position, const N& u, const N& v) const;  samples a point by u and v
-//   Seen<N> beyond(const Vec3<N>& direction) const;    only for infinitely distant lights, with
-//   Vec3d max_radiance_at_infinity() const;                           of Point<double>; see LightSet
+//   MaskOf<N> extended() const;                                                  whether it has an extent
+//   LightSample<N> draw(const Vec3<N>& position, const N& u, const N& v) const;  a point by u and v
+//   DistantRadiance<N> beyond(const Vec3<N>& direction) const;                   if infinitely distant, with
+//   Vec3d max_radiance_at_infinity() const;                                      of Point<double>
 // `make_light_set<Point>` is its factory.
 namespace orrery {
 

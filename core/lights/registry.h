@@ -6,6 +6,8 @@
 
 namespace orrery {
 
+// Returns all light types, numbered as LightPlace::set. The span is valid until the program exits.
+// Thread-safe.
 std::span<const LightType> light_types();
 
 }  // namespace orrery

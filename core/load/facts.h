@@ -5,7 +5,7 @@
 namespace orrery {
 
 // Computes the facts about a scene that the plan needs. REQUIRES: primitives, materials and objects are
-// numbered, and scene.motion is set.
+// numbered, and scene.motion is set. Throws Cancelled.
 SceneFacts gather_facts(const Scene& scene);
 
 }  // namespace orrery

@@ -143,8 +143,8 @@ Placement read_key(Params& p, const Placement& rest) {
                 p.point("translate", "Position of the model's origin, in metres.", derived(rest.translate))};
   for (const double Vec3d::*axis : {&Vec3d::x, &Vec3d::y, &Vec3d::z})
     if (key.scale.*axis * rest.scale.*axis < 0)
-      p.fail("scale", "factors must have the same signs as without motion (got " +
-                          number_text(key.scale.*axis) + " instead of " + number_text(rest.scale.*axis) +
+      p.fail("scale", "each factor must have the same sign as in the instance's own scale (got " +
+                          number_text(key.scale.*axis) + "; own scale " + number_text(rest.scale.*axis) +
                           ")");
   return key;
 }

@@ -14,7 +14,8 @@ namespace orrery {
 class Params;
 
 // Parses a scene strictly. Meshes and images that it names come from `assets`. Throws InputError with up to
-// 20 problems, each with its JSON Pointer, or MalformedJson if the text is not JSON.
+// 20 problems, each with its JSON Pointer, MalformedJson if the text is not JSON, or Cancelled. Thread-safe,
+// except for `assets`. The scene is immutable.
 std::shared_ptr<const Scene> load_scene(const Document& document, const AssetSource& assets = AssetSource());
 std::shared_ptr<const Scene> load_scene(std::string_view json, const AssetSource& assets = AssetSource(),
                                         const JsonLimits& limits = {});

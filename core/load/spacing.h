@@ -14,7 +14,7 @@ struct SurfaceGaps {
   MirrorChain mirrors;
 };
 
-// REQUIRES: facts.magnitude is set.
+// Measures the gaps. Throws Cancelled. REQUIRES: facts.magnitude is set.
 SurfaceGaps measure_surface_gaps(const Scene& scene, const SceneFacts& facts);
 
 }  // namespace orrery

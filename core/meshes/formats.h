@@ -13,6 +13,7 @@
 namespace orrery {
 
 // Reads a whole file of one format, without a byte order mark. Normals are returned as stored in the file.
+// Throws as read_mesh().
 TriangleMesh read_obj(std::string_view bytes, const MeshLimits& limits);
 TriangleMesh read_ply(std::string_view bytes, const MeshLimits& limits);
 TriangleMesh read_stl(std::string_view bytes, const MeshLimits& limits);

@@ -61,8 +61,8 @@ Chunks split_glb(std::string_view bytes) {
         "", "file must begin with a GLB header of 12 bytes (got " + std::to_string(bytes.size()) + ")");
   if (word(4) != 2) fail_at("byte 4", "must be GLB version 2 (got " + std::to_string(word(4)) + ")");
   if (word(8) > bytes.size())
-    fail_at("byte 8", "must be a GLB length of at most " + std::to_string(bytes.size()) +
-                          ", the size of the file (got " + std::to_string(word(8)) + ")");
+    fail_at("byte 8", "GLB length must be at most the file size, " + std::to_string(bytes.size()) +
+                          " bytes (got " + std::to_string(word(8)) + ")");
   bytes = bytes.substr(0, word(8));
   Chunks chunks;
   std::size_t at = 12;

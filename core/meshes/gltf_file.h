@@ -19,7 +19,7 @@ struct GltfNumbers {
 };
 
 // A .glb or .gltf file with its buffers. Never reads other files; external buffers are rejected. Throws
-// InputError.
+// InputError and Cancelled. Not thread-safe: accessor() decodes buffers.
 class GltfFile {
  public:
   explicit GltfFile(std::string_view bytes);

@@ -84,8 +84,7 @@ class GltfBuilder final : public nlohmann::json_sax<nlohmann::json> {
   }
   void check_depth() const {
     if (depth_ > kMaxDepth)
-      throw InputError("", "JSON nesting has more than " + std::to_string(kMaxDepth) + " levels (limit " +
-                               std::to_string(kMaxDepth) + ")");
+      throw InputError("", "JSON is nested too deeply (limit " + std::to_string(kMaxDepth) + " levels)");
   }
   void count_value() {
     check_depth();

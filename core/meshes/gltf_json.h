@@ -39,7 +39,7 @@ class GltfValue {
 std::uint64_t integer_or(const GltfValue& object, const char* key, std::uint64_t fallback);
 
 // Parses the parts of a glTF document that geometry needs, without extras and extensions. Throws InputError
-// if the text is not a JSON object, or exceeds the limits on depth and number of values.
+// if the text is not a JSON object, or exceeds the limits on depth and number of values. Throws Cancelled.
 nlohmann::json parse_gltf(std::string_view text);
 
 }  // namespace orrery

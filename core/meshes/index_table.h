@@ -13,7 +13,8 @@ namespace orrery {
 
 // Hash table from the content of list entries to their numbers 0, 1, 2, ... The list itself is stored
 // elsewhere. Uses open addressing, at most half full. Entry numbers do not depend on the hash, which has a
-// random key, so that a crafted file cannot force collisions.
+// random key, so that a crafted file cannot force collisions. Not thread-safe. find_or_add() throws
+// Cancelled.
 class IndexTable {
  public:
   // Returns equal hashes for equal words.

@@ -43,7 +43,7 @@ MeshFormat mesh_format(std::string_view bytes);
 // is at the lower left.
 //
 // Throws InputError (pointer "") with the place in the file, the value and the limit. Checks every size in a
-// file against `limits` and the available bytes before it allocates memory.
+// file against `limits` and the available bytes before it allocates memory. Throws Cancelled. Thread-safe.
 TriangleMesh read_mesh(std::string_view bytes, const MeshLimits& limits = {});
 
 }  // namespace orrery

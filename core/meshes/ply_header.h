@@ -33,7 +33,7 @@ struct PlyHeader {
 };
 
 // Reads the header of a PLY file (Turk, The PLY Polygon File Format, 1994). Throws InputError with the line
-// if it is invalid. Views point into `bytes`.
+// if it is invalid, or Cancelled. Views point into `bytes`.
 PlyHeader read_ply_header(std::string_view bytes);
 
 }  // namespace orrery

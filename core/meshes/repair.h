@@ -5,8 +5,9 @@
 
 #include "core/meshes/mesh_file.h"
 
-// Repairs of meshes before use. Each function keeps the order of the remaining elements. REQUIRES: valid
-// indices and finite coordinates, as returned by read_mesh.
+// Repairs of meshes before use. Each function keeps the order of the remaining elements. Each may throw
+// Cancelled; the mesh is then unusable. REQUIRES: valid indices and finite coordinates, as returned by
+// read_mesh.
 namespace orrery {
 
 // Removes triangles without area, whose face_normal() is zero, because no ray can hit them. Keeps all

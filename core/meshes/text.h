@@ -7,7 +7,8 @@
 namespace orrery {
 
 // Reads a text word by word. Words are separated by blanks and control characters. Lines end with \n, \r or
-// \r\n and are numbered from 1. Does not copy the text, so that lines may have any length.
+// \r\n and are numbered from 1. Does not copy the text, so that lines may have any length. Functions that
+// advance throw Cancelled. Not thread-safe.
 class TextReader {
  public:
   // If `joining`, a backslash at the end of a line continues it on the next one.

@@ -21,7 +21,7 @@ inline Vertex vertex_of(const TriangleMesh& mesh, std::size_t i) {
   return vertex;
 }
 
-// List of distinct vertices, in order of first occurrence.
+// List of distinct vertices, in order of first occurrence. Not thread-safe. add() throws Cancelled.
 class VertexList {
  public:
   VertexList(bool with_normals, bool with_uvs) : with_normals_(with_normals), with_uvs_(with_uvs) {}

@@ -73,7 +73,9 @@ struct AcceleratorCosts {
   }
 };
 
-// Type of acceleration structure. The list passed to `build` must outlive the accelerator.
+// Type of acceleration structure. The list passed to `build` must outlive the accelerator. Building runs on
+// the calling thread and on oneTBB workers. It throws Cancelled, and InputError if the structure would exceed
+// a limit.
 struct AcceleratorType {
   const char* name;
   const char* summary;

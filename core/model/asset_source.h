@@ -11,7 +11,8 @@
 namespace orrery {
 
 // Source of meshes and pictures that are not written in the scene itself. The base class has none; loaders of
-// scenes may override it. Each function throws InputError (pointer "") if the asset is missing or invalid.
+// scenes may override it. Each function throws InputError (pointer "") if the asset is missing or invalid,
+// and Cancelled. Only the thread that loads the scene calls it.
 class AssetSource {
  public:
   virtual ~AssetSource() = default;

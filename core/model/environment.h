@@ -10,7 +10,8 @@ namespace orrery {
 
 class Params;
 
-// Environment light: radiance from infinitely far away, seen by rays that miss everything.
+// Environment light: radiance from infinitely far away, seen by rays that miss everything. Immutable and
+// thread-safe.
 class Environment {
  public:
   virtual ~Environment() = default;
@@ -28,7 +29,7 @@ class Environment {
 struct EnvironmentType {
   const char* name;
   const char* summary;
-  // Returns null after a problem, which `Params` records.
+  // Returns null after a problem, which `Params` records. Throws Cancelled.
   std::shared_ptr<const Environment> (*read)(Params&, const AssetSource&);
 };
 

@@ -99,6 +99,8 @@ struct LightBounds {
   bool parallel = false;       // infinitely far away
 };
 
+// All lights of one type. add() is called by one thread while the scene is loaded. It records problems in
+// `params`. The other functions are thread-safe afterwards.
 class LightSet {
  public:
   virtual ~LightSet() = default;

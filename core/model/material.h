@@ -112,6 +112,8 @@ struct ReflectionLimits {
   bool specular = false;                                 // may mirror and refract all light
 };
 
+// All materials of one type. add() is called by one thread while the scene is loaded. It records problems in
+// `params`. The other functions are thread-safe afterwards.
 class MaterialSet {
  public:
   virtual ~MaterialSet() = default;

@@ -139,6 +139,9 @@ class MovingShapes {
   virtual ShapeKernelPtr<double> kernel(double, int first) const = 0;
 };
 
+// All shapes of one type. add() is called by one thread while the scene is loaded. It records problems in
+// `params` and throws Cancelled. The other functions are thread-safe afterwards. at() and kernel() throw
+// Cancelled.
 class ShapeSet {
  public:
   virtual ~ShapeSet() = default;

@@ -16,8 +16,8 @@ template <class Read>
 auto read_motion(Params& p, const Read& read) {
   Keyframes<decltype(read(p))> keys;
   p.each("motion",
-         "Keyframes, interpolated linearly: none, or at least two. A value that a key omits is that without "
-         "motion.",
+         "Keyframes, interpolated linearly: none, or at least two. Values that a keyframe omits keep the "
+         "object's static value.",
          {0, kMaxKeys}, [&](Params& key) {
            const double time = key.number("time", "Time in seconds, greater than that of the previous key.",
                                           {.min = -kMaxTime, .max = kMaxTime});

@@ -126,8 +126,8 @@ class TreeBuilder {
 
   bool open(json container) {
     if (levels_.size() == limits_.depth) {
-      throw InputError(next_pointer(), "JSON nesting has more than " + grouped(limits_.depth) +
-                                           " levels (limit " + grouped(limits_.depth) + ", json_depth)");
+      throw InputError(next_pointer(),
+                       "JSON is nested too deeply (limit " + grouped(limits_.depth) + " levels, json_depth)");
     }
     json* placed = put(std::move(container));
     levels_.push_back({placed});

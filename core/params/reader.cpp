@@ -141,7 +141,7 @@ std::string Reader::do_choice(Key key, Doc, Options options, const Fallback<std:
 }
 
 std::string Reader::do_text(Key key, Doc, std::size_t max_length, const char* fallback) {
-  const auto allowed = [&] { return "a text of at most " + std::to_string(max_length) + " characters"; };
+  const auto allowed = [&] { return "a string of at most " + std::to_string(max_length) + " characters"; };
   const json* value = find(key, fallback ? Need::optional : Need::required, allowed);
   if (!value) return fallback ? fallback : "";
   const std::string* text = value->get_ptr<const std::string*>();

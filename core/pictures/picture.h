@@ -30,9 +30,9 @@ struct PictureLimits {
       return of_side >= 1 && of_side <= static_cast<std::uint64_t>(side);
     };
     if (!within(width) || !within(height) || width * height > texels)
-      return "image has " + std::to_string(width) + " x " + std::to_string(height) + " texels (limit 1 to " +
-             grouped(static_cast<std::uint64_t>(side)) + " per side, picture_side, and " + grouped(texels) +
-             " in all, picture_texels)";
+      return "image has " + std::to_string(width) + " x " + std::to_string(height) +
+             " texels (limits: 1 to " + grouped(static_cast<std::uint64_t>(side)) +
+             " per side [picture_side], " + grouped(texels) + " in total [picture_texels])";
     if (of_channels < 1 || of_channels > channels)
       return "image must have 1 to " + std::to_string(channels) + " channels (got " +
              std::to_string(of_channels) + ")";

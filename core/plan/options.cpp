@@ -179,7 +179,7 @@ constexpr std::array kOptions{
       .kind = O::Number{&S::error, {.min = 0, .max = 1}, 0},
       .placeholder = "RMS",
       .help = "Maximum RMS error (error budget); 0: none. Samples, depth, minimum contribution and precision "
-              "adapt unless set.",
+              "are chosen automatically unless set.",
       .in_scene = false},
     O{.key = "error_metric",
       .short_name = "space",
@@ -195,7 +195,7 @@ constexpr std::array kOptions{
       .placeholder = "SECONDS",
       .help = "Time limit in seconds for the whole response (orbit: for the first frame); 0: none. Samples, "
               "depth "
-              "and precision adapt unless set.",
+              "and precision are chosen automatically unless set.",
       .in_scene = false},
     O{.key = "on_budget_miss",
       .short_name = "on_miss",

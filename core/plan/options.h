@@ -14,7 +14,8 @@
 #include "core/params/params.h"
 
 // Table of the render options, one row each. Derived from it: reader and schema of scenes and requests, query
-// parameters, flags, limits, cache key and ETag of a picture, explain, statistics and OpenAPI.
+// parameters, flags, limits, cache key and ETag of a picture, explain, statistics and OpenAPI. The table is
+// immutable and all functions are thread-safe.
 namespace orrery {
 
 struct Scene;
@@ -117,6 +118,7 @@ void require_picture(const RenderSettings& settings, std::string_view what);
 // clamped to the scene's motion. With a budget, samples, depth, precision and min_contribution are not taken
 // from the scene. If the request lacks them, samples and depth get their maximum, and precision is double.
 // min_contribution is then 1/16 with an error budget, which lowers it, or 0.001 with only a time limit.
+// Throws no errors of its own.
 RenderSettings resolve(const Scene& scene, const RenderSettings& asked);
 
 // Returns the camera orbit. REQUIRES: the camera options are given.

@@ -237,9 +237,9 @@ class Planner {
         std::string(plan_.technique->name) + " does not model it; distributed and path do";
     if (plan_.frame.aperture_radius > 0) decide("lens", "ignored", only, Bound::unknown());
     if (scene_.facts.materials.emits)
-      decide("light of emissive surfaces", "visible, lights nothing", only, Bound::unknown());
+      decide("light of emissive surfaces", "visible, but illuminates no surface", only, Bound::unknown());
     if (scene_.environment)
-      decide("light of the environment", "visible, lights nothing", only, Bound::unknown());
+      decide("light of the environment", "visible, but illuminates no surface", only, Bound::unknown());
     if (any_light([](const LightSet& lights, int index) { return lights.extended(index); }))
       decide("extent of lights", "ignored: one point or direction each", only, Bound::unknown());
   }

@@ -6,9 +6,10 @@
 
 namespace orrery {
 
-// Returns the stages that this scene and request need. A pure function, cheap enough to call for every frame.
-// The picture equals the picture with every stage present (RenderRequest::full_model), bit for bit. REQUIRES:
-// all given settings are values that read_request() could have returned.
+// Returns the stages that this scene and request need. A pure, thread-safe function, cheap enough to call for
+// every frame. Throws no errors of its own: read_request() rejects invalid settings. The picture equals the
+// picture with every stage present (RenderRequest::full_model), bit for bit. REQUIRES: all given settings are
+// values that read_request() could have returned.
 Plan make_plan(const Scene& scene, const RenderRequest& request);
 
 // Returns whether some light source has a non-zero intensity.

@@ -30,7 +30,7 @@ class Limits {
                                                    metres(facts_.smallest_feature.value));
     take_length(facts_.layer_distance.value, "a surface of " + facts_.layer_distance.where + " is " +
                                                  metres(facts_.layer_distance.value) +
-                                                 " from the next surface");
+                                                 " from the nearest other surface");
     const double pixel = footprint();
     take_length(pixel, "a pixel is " + metres(pixel) + " wide at the nearest object");
     take_mirrors();

@@ -75,7 +75,8 @@ struct PreparedScene::Parts {
 };
 
 // Returns the scene in number type T with an accelerator for an exposure. Adds the milliseconds spent
-// building, if any, to `build_ms`. Throws Cancelled if `stop` is requested.
+// building, if any, to `build_ms`. Throws Cancelled if `stop` is requested, and the errors of
+// AcceleratorType. Thread-safe.
 template <class T>
 World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& accelerator, const Exposure& exposure,
                    double& build_ms, std::stop_token stop = {});

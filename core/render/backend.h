@@ -19,8 +19,8 @@ struct RenderControl {
   std::stop_token stop = {};                               // a stop request ends the render with Cancelled
   std::function<void(int done, int total)> progress = {};  // counts tiles; called concurrently
   bool background = false;                                 // other renders have priority
-  bool spread = false;        // tiles are ordered so that any prefix covers the picture
-  SlotLease* pass = nullptr;  // as for WorkerPool::for_each()
+  bool spread = false;         // tiles are ordered so that any prefix covers the picture
+  SlotLease* lease = nullptr;  // as for WorkerPool::for_each()
   // Returns the seconds that the client has waited. Thread-safe. If empty, budgets measure from the call.
   std::function<double()> used_s = {};
   // Hard limits of a budget, regardless of the request.
@@ -38,23 +38,26 @@ struct RenderStats : FilmError {
   double cpu_ms = 0;           // tracing, all threads together
 };
 
-// Scene and settled plan, ready to render.
+// Scene and settled plan, ready to render. Thread-safe if concurrent calls have different films and
+// statistics.
 class Prepared {
  public:
   virtual ~Prepared() = default;
   // Adds the samples of each tile to the film, and their cost to `stats`. A tile whose first sample is not 0
   // continues from the sums in the film. The film depends on scene and plan alone: not on the backend, its
-  // threads, their order or the SIMD width. Throws Cancelled once a stop is requested; the film is then
-  // invalid. REQUIRES: FilmStorage::sums unless each tile has all samples.
+  // threads, their order or the SIMD width. Throws Cancelled once a stop is requested, and the exceptions of
+  // SlotLease::renew(); the film is then invalid. REQUIRES: FilmStorage::sums unless each tile has all
+  // samples.
   virtual void render(std::span<const TileView> tiles, Film& film, RenderStats& stats,
                       const RenderControl& control) = 0;
 };
 
+// Place where scenes are rendered. Thread-safe.
 class Backend {
  public:
   virtual ~Backend() = default;
   // Prepares the scene as far as needed and adds the cost to `stats`. Throws Cancelled once `stop` is
-  // requested.
+  // requested, and the errors of AcceleratorType.
   virtual std::unique_ptr<Prepared> prepare(const PreparedScene& scene, const SettledPlan& plan,
                                             RenderStats& stats, std::stop_token stop) = 0;
 };

@@ -28,7 +28,8 @@ constexpr double kShareOfCuts = 0.125, kShareOfPilot = kShareOfCuts / 2;
 // Divisors of min_contribution after a pilot and after a pass, and how often each is applied at most.
 constexpr double kStep = 4, kStepOfPass = 16;
 constexpr int kMaxPilots = 10, kMaxRefinements = 3;
-constexpr double kHeavy = 10;            // mean weight of rays cut by depth, in min_contribution
+// Cut rays count as heavy if their mean weight is at least this multiple of min_contribution.
+constexpr double kHeavy = 10;
 constexpr double kShareOfPilots = 0.25;  // maximum share of the time limit
 constexpr double kSlower = 1.1;          // factor on the time of the last pass
 constexpr double kLastPassReach = 4.4;   // beyond this factor on the samples, several passes are left
@@ -362,7 +363,7 @@ class BudgetedRender {
       if (term.bound.kind == Bound::Kind::unknown && (made_.samples > 0 || is_not_sampling(term)))
         return term.subject + ": " + term.reason;
     if (!made_.certificate.min_provable) return "samples: radiance of a sample is unbounded";
-    if (*rest() > error_) return "error apart from sampling may be " + rounded(*rest());
+    if (*rest() > error_) return "errors other than sampling noise may reach " + rounded(*rest());
     if (!is_provable()) return "smallest provable error at this size: " + rounded(*least());
     if (!reason_.empty()) return reason_;
     const bool near = *made_.certificate.total().rms <= kNearLeast * *least();

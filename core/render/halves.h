@@ -7,9 +7,10 @@
 
 namespace orrery {
 
-// Differences between the two halves of the samples. The value of a pixel is the mean over channels of the
-// squared difference over the squared range of a sample, so in [0, 1]. For displays, also collects rounding
-// errors of 8-bit codes, and the radiance by which one half alone exceeds the display's range.
+// Differences between the two halves of the samples. The value of a pixel is the squared difference, divided
+// by the squared range of a sample and averaged over the channels; it is in [0, 1]. For displays, also
+// collects rounding errors of 8-bit codes, and the radiance by which one half alone exceeds the display's
+// range.
 class Halves {
  public:
   void add(double value) { pixels_.add(value); }
@@ -30,8 +31,8 @@ class Halves {
     codes_ += codes;
   }
   void add(const Halves& other);  // adds other tiles
-  // Returns the statistics of `more_pixels` times the pixels and tiles, with `squares` times the squared
-  // differences.
+  // Returns the statistics scaled to `more_pixels` times as many pixels and tiles, and to squared differences
+  // `squares` times as large.
   Halves scaled(double more_pixels, double squares) const;
 
   bool known() const { return pixels_.count() > 0; }

@@ -18,7 +18,7 @@ Pilot trace(std::span<const TileView> views, const PreparedScene& scene, const S
   const auto prepared = threads_backend(pool)->prepare(scene, plan, pilot.stats, control.stop);
   Film forgotten(plan->width, plan->height, FilmStorage::srgb8);
   prepared->render(views, forgotten, pilot.stats,
-                   {.stop = control.stop, .background = control.background, .pass = control.pass});
+                   {.stop = control.stop, .background = control.background, .lease = control.lease});
   double pixels = 0;
   for (const TileView& view : views) pixels += view.width * view.height;
   pilot.share = pixels / plan->width / plan->height;

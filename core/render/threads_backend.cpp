@@ -39,7 +39,7 @@ class OnThreads final : public Prepared {
           if (control.progress) control.progress(done, total);
           return true;
         },
-        control.pass);
+        control.lease);
     if (done != total) throw Cancelled();
     for (const auto& renderer : renderers)
       if (renderer) renderer->add_to(stats);

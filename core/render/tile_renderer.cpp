@@ -27,7 +27,7 @@ void add_vector(bool first, const Vec3Array<T>& value, Planes& sums) {
   add(first, value.z, sums[2]);
 }
 
-// Adds the values of slots that hit something. Other values are not set.
+// Adds the values of slots that hit something. `value` is undefined in the other slots.
 template <class T>
 void add_weighted(bool first, const Array<T>& value, const Array<T>& weight, TileSums::Plane& sum) {
   if (first) sum.fill(0.0);

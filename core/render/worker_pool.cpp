@@ -58,9 +58,9 @@ class WorkerThreads {
     changed_.notify_one();
   }
 
-  void for_each(int count, const WorkerPool::Step& work, SlotLease* pass) {
+  void for_each(int count, const WorkerPool::Step& work, SlotLease* lease) {
     if (count == 0) return;
-    Loop loop{.work = work, .count = count, .pass = pass, .free_workers = {}};
+    Loop loop{.work = work, .count = count, .lease = lease, .free_workers = {}};
     for (int worker = count_; worker-- > 0;) loop.free_workers.push_back(worker);
     std::unique_lock lock(mutex_);
     add(loop);
@@ -71,13 +71,13 @@ class WorkerThreads {
       lock.unlock();
       std::exception_ptr error;
       try {
-        pass->renew();
+        lease->renew();
       } catch (...) {
         error = std::current_exception();
       }
       lock.lock();
       if (error) loop.end(error);
-      loop.pass_expired = false;
+      loop.lease_expired = false;
       add(loop);
     }
     if (loop.error) std::rethrow_exception(loop.error);
@@ -89,23 +89,23 @@ class WorkerThreads {
   struct Loop {
     const WorkerPool::Step& work;
     const int count;
-    SlotLease* const pass;
+    SlotLease* const lease;
     const TaskContext scope = TaskScope::current();  // the caller's
     std::vector<int> free_workers;
     int next = 0, running = 0;          // next step to start; steps started and not done
     std::list<StepSlice*> paused = {};  // running steps that have yielded
     Clock::duration used{};             // time used; starts at the minimum of the other loops
     std::exception_ptr error = {};
-    bool pass_expired = false;
+    bool lease_expired = false;
     std::condition_variable changed = {};
     void end(std::exception_ptr why) {
       if (!error) error = why;
       next = count;
     }
-    bool pauses() const { return pass_expired && running == static_cast<int>(paused.size()); }
+    bool pauses() const { return lease_expired && running == static_cast<int>(paused.size()); }
     bool over() const { return next == count && running == 0; }
     bool waits() const {
-      return !pass_expired && (!paused.empty() || (next < count && !free_workers.empty()));
+      return !lease_expired && (!paused.empty() || (next < count && !free_workers.empty()));
     }
   };
 
@@ -150,7 +150,7 @@ class WorkerThreads {
     if (contended()) contended_.notify_one();
   }
 
-  // Returns whether several callers may have work. Loops whose pass is being renewed are not in loops_.
+  // Returns whether several callers may have work. Loops whose lease is being renewed are not in loops_.
   bool contended() const {
     const auto others = std::count_if(places_.begin(), places_.end(), [&](const Place* place) {
       return std::find(loops_.begin(), loops_.end(), place->loop) == loops_.end();
@@ -204,14 +204,14 @@ class WorkerThreads {
   }
   // Returns whether a task or another loop has precedence over this loop.
   bool is_over(const Loop& loop) {
-    if (loop.pass_expired || !tasks_.empty()) return true;
+    if (loop.lease_expired || !tasks_.empty()) return true;
     const Loop* const other = next_loop();
     return other && other != &loop && other->used <= loop.used;
   }
 
   void ask_pass(Loop& loop) {
-    if (!loop.pass || loop.pass_expired || !loop.pass->expired()) return;
-    loop.pass_expired = true;
+    if (!loop.lease || loop.lease_expired || !loop.lease->expired()) return;
+    loop.lease_expired = true;
   }
 
   void yield(StepSlice& turn) {
@@ -346,8 +346,8 @@ void WorkerPool::enqueue(bool background, std::function<void()> task) {
   (background ? parts_->background : parts_->foreground).enqueue(std::move(task));
 }
 
-void WorkerPool::for_each(int count, bool background, const Step& work, SlotLease* pass) {
-  (background ? parts_->background : parts_->foreground).for_each(count, work, pass);
+void WorkerPool::for_each(int count, bool background, const Step& work, SlotLease* lease) {
+  (background ? parts_->background : parts_->foreground).for_each(count, work, lease);
 }
 
 }  // namespace orrery

@@ -34,11 +34,11 @@ class WorkerPool {
   // Steps that run at once have different workers, 0 <= worker < threads(). Callers share the threads evenly.
   // A long step must call Turn::yield() now and then to yield to callers that had less time. A step that
   // does not yield for 50 ms shares its core with them. Background callers get the time that others leave.
-  // Once a step returns false or throws, no more steps start; the first exception is rethrown here. If `pass`
-  // is given and has expired, no step starts and running steps pause when they yield. The caller's thread
-  // then renews it.
+  // Once a step returns false or throws, no more steps start; the first exception is rethrown here. If
+  // `lease` is given and has expired, no step starts and running steps pause when they yield. The caller's
+  // thread then renews it.
   using Step = std::function<bool(int step, int worker, TimeSlice& turn)>;
-  void for_each(int count, bool background, const Step& work, SlotLease* pass = nullptr);
+  void for_each(int count, bool background, const Step& work, SlotLease* lease = nullptr);
 
  private:
   struct Parts;

@@ -15,6 +15,7 @@ struct MeshObject {
 };
 
 // Reads the meshes of a scene. Limits apply to their sum, because many objects and keys may name one file.
+// Records problems in Params. Throws Cancelled. Not thread-safe.
 class MeshReader {
  public:
   explicit MeshReader(MeshSource& source) : source_(source) {}

@@ -30,7 +30,8 @@ struct MovingMesh {
   PositionIndices always;  // vertices that coincide at all keys
   std::uint64_t max_pairs;
 
-  // Returns the mesh at `time`, in seconds, with its triangles in the same order.
+  // Returns the mesh at `time`, in seconds, with its triangles in the same order. Thread-safe. Throws
+  // Cancelled.
   TriangleMesh at(double time) const;
   // Returns vectors for all corners, three per triangle, to interpolate between the moments of an exposure:
   // the keys' normals, or the smoothed normals at `time`. Empty for a flat mesh.

@@ -11,7 +11,8 @@ namespace orrery {
 // Renders a scene as planned, on one thread.
 RenderResult rendered(const std::shared_ptr<const Scene>& scene, const RenderRequest& request);
 
-// Returns linear red, green and blue of all pixels. REQUIRES: as Film::image() of linear32.
+// Returns linear red, green and blue of all pixels. REQUIRES: the film can be converted to linear32; see
+// Film::image().
 std::vector<float> values_of(const Film& film);
 
 // One tile whose samples are traced step by step. REQUIRES: the picture is one tile, at most 32 x 32.

@@ -7,6 +7,7 @@
 
 namespace orrery {
 
+// Returns all rows, in the order of the report. The span is valid until the program exits. Thread-safe.
 std::span<const StabilityRow> stability_rows();
 
 // Returns the row with this id. Throws std::out_of_range if there is none.

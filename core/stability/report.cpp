@@ -28,8 +28,8 @@ std::string row_of(const StabilityResult& result) {
 constexpr const char* kIntroduction = R"(# Numerical stability
 
 Each row computes one quantity twice: with a known method, as published, and with the method that orrery uses. Numbers
-are errors; 0 is exact. A test checks that the method of orrery keeps its bound. Tests of the same subject name the
-same id.
+are errors; 0 is exact. A test checks that the method of orrery keeps its bound. Tests name the
+same ids, which the [catalogue](stability-catalogue.md) describes.
 
 `orrery stability` measures all rows on the running build (`--json` for programs; `GET /v1/stability` of the service).
 The results are the same on every machine. `orrery stability --docs docs` writes this page, and a test compares it with

@@ -5,7 +5,8 @@
 
 #include "core/stability/row.h"
 
-// Text and Markdown reports of the measured rows.
+// Text and Markdown reports of the measured rows. Pure, thread-safe functions that throw no errors of their
+// own.
 namespace orrery {
 
 // Formats a figure: "2.4e-7 m", "3.1 %", "12 of 13", "0". The unit "1" is not printed.

@@ -75,7 +75,8 @@ struct NetworkExample {
 };
 
 struct TrainingOptions {
-  int steps = 2000;    // 8000 proved a twentieth more shadows where many are provable
+  // 8,000 steps prove 5 % more occlusions in scenes where many can be proved.
+  int steps = 2000;
   int examples = 32;   // per step
   float rate = 3e-3f;  // first step; falls linearly to a tenth
   std::uint32_t seed = 1;

@@ -8,7 +8,8 @@
 namespace orrery {
 
 // Light from light sources at surfaces: evaluates the materials for `light`, which the caller fills, and
-// traces shadow rays. Not thread-safe: each object owns its batches.
+// traces shadow rays. Not thread-safe: each object owns its batches. Objects on several threads may share the
+// geometry, accelerator and plan.
 template <class T>
 class ShadowedLight {
  public:

@@ -23,9 +23,9 @@ inline constexpr double kEqualPixels = 1e-5;
 // Renders independent, uniformly drawn pixels twice with the same samples: as requested, and with the full
 // model. The full model has double precision, maximum depth, weaker rays and no clamp. A single centred
 // sample is compared with 64 samples all over the pixel. Neither render reuses paths. The bound is that of
-// UnitHistogram::upper_mean() with the certificate's doubt. Throws what make_plan() throws, InputError for
-// budgets, layers and other views, and Cancelled once control.stop is requested. REQUIRES: pixels in
-// 1..kMaxAuditPixels.
+// UnitHistogram::upper_mean() with the certificate's doubt. Renders on the threads of `pool`; thread-safe.
+// Throws InputError for budgets, layers and other views, the errors of Backend::prepare(), and Cancelled once
+// control.stop is requested. REQUIRES: pixels in 1..kMaxAuditPixels.
 Audit audit(const PreparedScene& scene, const RenderRequest& asked, int pixels, std::uint64_t seed,
             WorkerPool& pool, const RenderControl& control = {});
 

@@ -27,7 +27,7 @@ struct Measurement {
 };
 
 // Position of a point in a chart. front: more accurate or faster than each other point. undecided: the rounds
-// differ too much to decide. beaten: another point is faster and at least as accurate.
+// differ too much to decide. dominated: another point is faster and at least as accurate.
 enum class ParetoStatus { front, undecided, dominated };
 
 // Several pictures of one configuration with different seeds. The n-th rounds of all points share a seed.
@@ -74,7 +74,7 @@ struct Chart {
   std::string scene_id, title;
   PictureSize size;      // requested picture
   PictureSize measured;  // rendered pictures
-  int rounds = 0;        // per point that is not beaten earlier
+  int rounds = 0;        // per point that is not dominated earlier
   int threads = 1;       // assumed by full_seconds()
   Configuration reference;
   std::string reference_plan, reference_picture_plan;  // first of its two pictures; as in Point
@@ -92,8 +92,8 @@ struct Chart {
   double full_seconds(double cpu_ms) const;
 };
 
-// Sets the standing of each point. Compares means, and paired t-intervals of 95 % over the rounds that two
-// points share. Errors below `floor` count as `floor`, and a difference of less than 1 % as none.
+// Sets the Pareto status of each point. Compares means, and paired t-intervals of 95 % over the rounds that
+// two points share. Errors below `floor` count as `floor`, and a difference of less than 1 % as none.
 void mark_pareto_front(std::vector<Point>& points, double floor);
 
 // Cheapest way to stay below an error.

@@ -17,7 +17,7 @@ inline constexpr std::int64_t kMaxChartPixels = std::int64_t{1} << 20;
 // precision and four times the samples of the highest configuration. Effects that this technique does not
 // model are not counted as errors. Each round renders all configurations with a seed of its own; the
 // reference has two. A configuration that does the same work as a simpler one is dropped after the first
-// round. From the second round on, beaten configurations get no more rounds. Not thread-safe.
+// round. From the second round on, dominated configurations get no more rounds. Not thread-safe.
 class Study {
  public:
   struct Extent {
@@ -26,10 +26,9 @@ class Study {
     int width = 0;     // pixels of the rendered pictures; 0: as requested, which is also the maximum
     int threads = 1;   // assumed by Chart::full_seconds()
   };
-  // Charts the picture of `view`. Throws what make_plan() throws. Throws InputError (/image) for more than
-  // kMaxChartPixels, and (/render/samples, /render/precision) if `view` sets an option that the chart
-  // varies. The scene must live until complete(). REQUIRES: samples in 1..kMaxChartSamples, rounds in
-  // 1..kMaxChartRounds.
+  // Charts the picture of `view`. Throws InputError (/image) for more than kMaxChartPixels, and
+  // (/render/samples, /render/precision) if `view` sets an option that the chart varies. The scene must live
+  // until complete(). REQUIRES: samples in 1..kMaxChartSamples, rounds in 1..kMaxChartRounds.
   Study(const Scene& scene, const RenderRequest& view, const Extent& extent);
 
   // Returns the number of pictures to render: two of the reference, then the configurations, round by round.
@@ -72,7 +71,7 @@ class Study {
   std::uint64_t seed_ = 0;
   int added_ = 0;
   std::vector<float> reference_;  // empty once complete
-  std::vector<Turn> turns_;       // pictures of the points, including those added
+  std::vector<Turn> turns_;       // one per picture of a point, both rendered and still to come
   std::vector<bool> same_;        // by point: does the work of a simpler model
   Chart chart_;
 };

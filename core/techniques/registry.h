@@ -6,6 +6,8 @@
 
 namespace orrery {
 
+// Returns all techniques, in the order of the schemas. The span is valid until the program exits.
+// Thread-safe.
 std::span<const TechniqueType> technique_types();
 
 }  // namespace orrery

@@ -30,7 +30,8 @@ class SettledPlan {
 
 // Chooses the accelerator if the plan leaves it open: the one with the lowest cost for the work counted on
 // some tiles of the image. Records the choice in the plan's decisions. Decides once per scene and number
-// type, so that all frames of a scene use the same accelerator. Throws Cancelled if `stop` is requested.
+// type, so that all frames of a scene use the same accelerator. Thread-safe. Throws Cancelled if `stop` is
+// requested, and the errors of AcceleratorType.
 SettledPlan settle(const PreparedScene& scene, Plan plan, std::stop_token stop = {});
 
 }  // namespace orrery

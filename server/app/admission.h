@@ -62,10 +62,9 @@ double cost_of_reading(std::size_t bytes);
 //  - Interactive work goes first. Batch work has at most half of the slots, and gets every second free slot
 //    while none of it runs.
 //  - Within a priority, clients share by estimated cost. Work starts in the order of its client's virtual
-//  finish
-//    time (self-clocked fair queueing: Golestani, INFOCOM 1994). Time in a slot beyond the estimate is also
-//    charged to the client. Work shared by several clients starts at the earliest finish time of any of them,
-//    and is charged to each.
+//    finish time (self-clocked fair queueing: Golestani, INFOCOM 1994). Time in a slot beyond the estimate is
+//    also charged to the client. Work shared by several clients starts at the earliest finish time of any of
+//    them, and is charged to each.
 //  - Work that has held its slot for a while is preempted by waiting work: interactive work by interactive
 //    work, batch work by both, and interactive work by batch work if no batch work has a slot. Work of the
 //    same client preempts it later. Preempted work continues until it renews its ticket, and then waits in
@@ -85,8 +84,8 @@ class Admission {
   Admission(const Limits& limits, Timer& timer) : limits_(limits), timer_(timer) {}
 
   // Lease of a slot, released by the destructor. The destructor counts the work as done, at the estimated
-  // cost or that of set_cost(), unless an exception is being thrown. As a Pass, the lease expires when the
-  // work is preempted. Renewing it charges the used time to the client and waits for another slot. The lease
+  // cost or that of set_cost(), unless an exception is being thrown. As a SlotLease, it expires when the work
+  // is preempted. Renewing it charges the used time to the client and waits for another slot. The lease
   // replaces the handler's slot (HandlerSlots), which the handler takes again when the lease ends.
   class Ticket final : public SlotLease {
    public:

@@ -237,7 +237,7 @@ Forecast App::forecast(const PreparedScene& scene, const SettledPlan& plan, cons
     const SceneStore::SizeGuard measured(scenes_, scene);
     RenderControl control = limits_of(scene.scene(), *plan);
     control.stop = stop;
-    control.pass = &ticket;
+    control.lease = &ticket;
     found = orrery::forecast(scene, plan, pool_, control);
   });
   return *found;

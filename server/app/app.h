@@ -82,7 +82,7 @@ class App {
                   const Caller& caller, Timing& timing);
 
   // Returns a progressive render, which the caller advances pass by pass. Throws Busy while draining, and
-  // TooManyRays.
+  // TooManyRays unless the image is cached. Refinement::next() throws the other errors.
   std::unique_ptr<Refinement> refine(RefinementSpec spec);
 
   // Throws TooManyRays if the estimated cost of the image exceeds the limit of one request.
@@ -102,6 +102,8 @@ class App {
   // before other threads use the app.
   void watch_connections(std::function<std::string_view()> readiness) { connections_ = std::move(readiness); }
   void retire() { retires_ = true; }  // reports "draining" but still accepts work
+  // Starts draining: routes reject new work with Busy, jobs stop, and streams end at their next frame.
+  // Running renders complete. Does not wait for them. Cannot be undone.
   void drain();
   // Cancels all running work.
   void end() { ends_.request_stop(); }

@@ -135,7 +135,11 @@ Log::Log(LogForm form, LogLevel lowest, int fd) : form_(form) {
       form == LogForm::json ? spdlog::pattern_time_type::utc : spdlog::pattern_time_type::local);
 }
 
-Log::~Log() { sink_->close_by(std::chrono::steady_clock::now() + std::chrono::seconds(1)); }
+Log::~Log() {
+  sink_->close_by(std::chrono::steady_clock::now() + std::chrono::seconds(1));
+  logger_.reset();
+  thread_.reset();  // joins the thread that uses the sink
+}
 
 void Log::write(LogLevel level, std::string_view event, const ordered_json& fields) const {
   if (logger_->should_log(level_of(level)))

@@ -66,7 +66,7 @@ Refinement::Step Refinement::render(int samples, const std::stop_token& stop, St
   const std::uint64_t rays_before = stats.counts.rays.total();
   const double ms_before = done_ > 0 ? stats.build_ms + stats.trace_ms : 0;
   progress_->refine(samples,
-                    {.stop = stop, .background = demand.priority == Priority::batch, .pass = &ticket});
+                    {.stop = stop, .background = demand.priority == Priority::batch, .lease = &ticket});
   done_ = samples;
   Step step{.samples = samples,
             .picture = {},

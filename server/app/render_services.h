@@ -53,7 +53,7 @@ struct RenderServices {
   RenderResult render(Admission::Ticket& ticket, const PreparedScene& scene, const Plan& plan,
                       FilmStorage storage, const RenderControl& control) const {
     RenderControl shared = control;
-    shared.pass = &ticket;
+    shared.lease = &ticket;
     const SceneStore::SizeGuard measured(scenes, scene);
     const SettledPlan settled = settle(scene, plan, control.stop);
     RenderResult result = render_frame(scene, settled, storage, pool, shared);

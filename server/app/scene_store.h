@@ -20,8 +20,8 @@ namespace orrery {
 // request; others were only rendered and are cached. Both are held by the clients that posted them.
 // FairShares selects the client that gives up entries. It gives up cached scenes first, then the structures
 // of kept scenes. Kept scenes are evicted only for other kept scenes, so a client that may only render cannot
-// evict them. The store accounts for the memory of a stored scene; before and after, the client's work does.
-// Safe from any thread.
+// evict them. The store accounts for the memory of a stored scene. Before it is stored and after it is
+// removed, its memory is charged to the client's work. Safe from any thread.
 class SceneStore {
  public:
   using Prepared = std::shared_ptr<const PreparedScene>;

@@ -72,12 +72,12 @@ void WorkMemory::require_room(const std::string& client, std::size_t own, std::s
     throw InputError("", "request needs at least " + bytes_text(bytes) + " of memory at one time (limit " +
                              grouped(max_ / 2) + ", half of " + kName + ")");
   if (fits(of_others, 0))
-    throw ClientLimitExceeded("requests of this client take " + bytes_text(others_of_client) +
-                                  " of memory, and " + grouped(bytes) + " more are needed (limit " +
-                                  grouped(max_) + " for all clients, " + kName + ")",
+    throw ClientLimitExceeded("this client's requests already hold " + bytes_text(others_of_client) +
+                                  " and need " + grouped(bytes) + " more (limit " + bytes_text(max_) +
+                                  " for all clients, " + kName + ")",
                               kRetry_s, kName);
-  throw LimitExceeded("requests of other clients take " + bytes_text(of_others) + " of memory, and " +
-                          grouped(others_of_client + bytes) + " are needed (limit " + grouped(max_) +
+  throw LimitExceeded("other clients' requests hold " + bytes_text(of_others) + ", and this client's need " +
+                          grouped(others_of_client + bytes) + " (limit " + bytes_text(max_) +
                           " for all clients, " + kName + ")",
                       kRetry_s, kName);
 }

@@ -8,7 +8,9 @@ class App;
 
 namespace orrery {
 
-// A subcommand. `run` is called after parsing and returns the exit status or throws.
+// A subcommand. `run` is called after parsing, on the main thread. It returns the exit status or throws a
+// std::exception: InputError or BadScene (kBadInput), BudgetMissed (kMissed), Cancelled (kInterrupted), or
+// any other (kFailed).
 struct Command {
   CLI::App* app;
   std::function<int()> run;

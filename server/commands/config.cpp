@@ -83,13 +83,13 @@ std::string text_of(const nlohmann::json& value, bool list) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_boolean() || value.is_number()) return value.dump();
   if (!list || !value.is_array())
-    throw InputError("", std::string(list ? "must be a text or a list of texts"
-                                          : "must be a number, a text, true or false") +
+    throw InputError("", std::string(list ? "must be a string or a list of strings"
+                                          : "must be a number, a string, true or false") +
                              " (got " + shortened(value.dump(), 40) + ")");
   std::string texts;
   for (const auto& entry : value) {
     if (!entry.is_string())
-      throw InputError("", "must be a list of texts (got " + shortened(value.dump(), 40) + ")");
+      throw InputError("", "must be a list of strings (got " + shortened(value.dump(), 40) + ")");
     texts += (texts.empty() ? "" : ",") + entry.get<std::string>();
   }
   return texts;

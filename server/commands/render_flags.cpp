@@ -60,7 +60,7 @@ void add_image_flags(CLI::App& app, RenderFlags& flags, CommonOptions common, co
   app.add_flag("--full-model", flags.full_model, "Omit no stage, even if the scene does not need it")
       ->group(before + "Speed");
   app.add_option("--slice", flags.slice,
-                 with_range("Rays that pass the stages together; does not change the image", 16, kBatch,
+                 with_range("Rays processed together by each stage; does not change the image", 16, kBatch,
                             std::to_string(flags.slice)))
       ->check(integer_from(16, kBatch))
       ->type_name("N")

@@ -23,7 +23,7 @@ int make_token(const TokenOptions& options) {
   const bool word =
       !options.name.empty() && std::all_of(options.name.begin(), options.name.end(),
                                            [](char c) { return c > ' ' && c != 0x7F && c != '#'; });
-  if (!word) throw InputError("NAME", "must be a word without blanks, control characters and #");
+  if (!word) throw InputError("NAME", "must not be empty or contain spaces, control characters or \"#\"");
   parse_scopes(options.scopes);
   constexpr std::size_t kBytes = 32;
   const std::string token = random_hex(kBytes);

@@ -4,7 +4,7 @@
 
 namespace orrery {
 
-// A listening TCP socket.
+// A listening TCP socket. Not thread-safe: one thread accepts connections.
 class Listener {
  public:
   // Port 0 selects a free port. Throws Error if the address is unavailable.

@@ -14,7 +14,7 @@ namespace orrery {
 // Handles one request on a connection: head, admission, body, handler, response. Thread-safe.
 class RequestProcessor {
  public:
-  // `handler` and `monitor` must outlive the exchanger.
+  // `handler` and `monitor` must outlive the processor.
   RequestProcessor(const HttpServer::Options& options, const HttpServer::Handler& handler,
                    HangupMonitor& monitor)
       : handler_(handler),

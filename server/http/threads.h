@@ -10,7 +10,7 @@
 namespace orrery {
 
 // Pool with a thread for each connection. Threads start when needed and are reused. A few extra threads serve
-// new connections while evicted ones end.
+// new connections while evicted ones end. Thread-safe.
 class ConnectionThreads {
  public:
   explicit ConnectionThreads(std::size_t most) : max_(most) {}

@@ -19,6 +19,8 @@ struct RouteBody {
   void (*require)(const Request&);  // throws to reject the body by the request's head
 };
 
+// Endpoint of the service. `handler` runs on connection threads, for several requests at once, so it must be
+// thread-safe. Its exceptions become the response of problem_response().
 struct Route {
   using Handler = std::function<Response(Request&)>;
 

@@ -106,7 +106,7 @@ struct Pair {
   }
 };
 
-TEST(Pictures, FinishesForOthersWhenFirstLeaves) {
+TEST(Pictures, FinishesForOtherClientsWhenFirstDisconnects) {
   Pair pair;
   pair.run(
       [&](const auto& get) {

@@ -68,7 +68,7 @@ TEST_F(Config, ReportsAllErrorsAtOnce) {
            file + ": unknown setting bodybytes (did you mean body_bytes?)",
            file + ": /threads: must be an integer from 0 to 1024 (got many)",
            file + ": /insecure: must be true or false (got 3)",
-           file + ": /jobs: must be a number, a text, true or false (got [1])",
+           file + ": /jobs: must be a number, a string, true or false (got [1])",
            std::string("--connections: must be an integer from 1 to 10000 (got 0)"),
            std::string("ORRERY_ORBITS: must be an integer from 1 to 10000 (got x)"),
            std::string("unknown setting ORRERY_PORTT (did you mean ORRERY_PORT?)"),

@@ -89,7 +89,7 @@ TEST(Help, StartsWithTheCommonOptions) {
 }
 
 // The commands name every image option. Only `help options` describes those that are not common.
-TEST(Help, OfCommandsListsTheImageOptionsByName) {
+TEST(Help, ListsImageOptionsByNameInCommandHelp) {
   const std::string described = run_program("help options").text;
   for (const RenderOption& option : render_options()) {
     const std::string name(option.short_name.empty() ? option.key : option.short_name);

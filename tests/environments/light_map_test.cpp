@@ -58,7 +58,7 @@ TEST(ImportanceTable, SamplesCellsByProbability) {
   EXPECT_TRUE(ImportanceTable(4, 3, std::vector<float>(12, 0.0f)).empty());
 }
 
-// In cells of half a texel the density is bilinear, so that its integral is the value in the middle.
+// Within a cell half a texel wide the density is bilinear, so its mean is its value at the centre.
 TEST(LightMap, SamplesPlacesByDensity) {
   covers("light-24");
   constexpr int kWidth = 16, kHeight = 8, kDraws = 1'000'000;

@@ -81,7 +81,11 @@ export const certificateFaults = [
     from: "double kept = std::max(mean(), 1e-18), rejected = 1;",
     to: "return mean(); double kept = 0, rejected = 1;",
     target: "test_render",
-    tests: ["UpperMean.FollowsRuleOfThreeWithoutEvents*", "UpperMean.HoldsForRareErrors*", "Certificate.NeverReportsZeroErrorFromSamples*"],
+    tests: [
+      "UpperMean.FollowsRuleOfThreeWithoutEvents*",
+      "UpperMean.HoldsForRareErrors*",
+      "Certificate.NeverReportsZeroErrorFromSamples*",
+    ],
   },
   {
     fault: 13,
@@ -108,7 +112,7 @@ export const certificateFaults = [
     from: "if (samples_ > 0) stats_.join(before);",
     to: "",
     target: "test_render",
-    tests: ["Certificate.BoundsWholeRenderFromPasses*"],
+    tests: ["Certificate.SumsPassLedgersForWholeRender*"],
   },
   {
     fault: 13,

@@ -8,18 +8,28 @@
 //     --changed [REVISION]  faults in files that differ from REVISION (default: merge base with main)
 //     --compile             only checks that each fault compiles with the flags of build/
 
-import {spawnSync} from "node:child_process";
-import {existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, statSync, utimesSync, writeFileSync} from "node:fs";
-import {availableParallelism, tmpdir} from "node:os";
-import {dirname, join, resolve} from "node:path";
-import {parseArgs} from "node:util";
+import { spawnSync } from "node:child_process";
+import {
+  existsSync,
+  mkdirSync,
+  mkdtempSync,
+  readdirSync,
+  readFileSync,
+  rmSync,
+  statSync,
+  utimesSync,
+  writeFileSync,
+} from "node:fs";
+import { availableParallelism, tmpdir } from "node:os";
+import { dirname, join, resolve } from "node:path";
+import { parseArgs } from "node:util";
 
-import {compileFaults} from "./compile.mjs";
-import {faults as all} from "./faults.mjs";
-import {kRoot, planted} from "./planted.mjs";
-import {unitsWith} from "./units.mjs";
+import { compileFaults } from "./compile.mjs";
+import { faults as all } from "./faults.mjs";
+import { kRoot, planted } from "./planted.mjs";
+import { unitsWith } from "./units.mjs";
 
-const kTestMinutes = 2;  // a fault may also keep a test from ending
+const kTestMinutes = 2; // a fault may also keep a test from ending
 const kNamesShown = 4;
 // Test executables that start the program.
 const kTargetsOfTheProgram = ["test_commands", "test_http"];
@@ -27,10 +37,10 @@ const kTargetsOfTheProgram = ["test_commands", "test_http"];
 class Stop extends Error {}
 
 function run(command, args, options = {}) {
-  const result = spawnSync(command, args, {encoding: "utf8", maxBuffer: 1 << 28, ...options});
-  const {error} = result;
+  const result = spawnSync(command, args, { encoding: "utf8", maxBuffer: 1 << 28, ...options });
+  const { error } = result;
   if (error && error.code !== "ETIMEDOUT") throw new Stop(`${command}: ${error.message}`);
-  return {passed: result.status === 0, output: `${result.stdout ?? ""}${result.stderr ?? ""}`};
+  return { passed: result.status === 0, output: `${result.stdout ?? ""}${result.stderr ?? ""}` };
 }
 
 function git(...args) {
@@ -55,18 +65,22 @@ function shardOf(faults, text) {
 }
 
 function chosen(options, numbers) {
-  let faults = numbers.length === 0 ? all : all.filter(({fault}) => numbers.includes(String(fault)));
+  let faults = numbers.length === 0 ? all : all.filter(({ fault }) => numbers.includes(String(fault)));
   if (options.changed !== undefined) {
     const changed = changedFiles(options.changed);
-    faults = faults.filter(({file}) => changed.has(file));
+    faults = faults.filter(({ file }) => changed.has(file));
   }
   return options.shard === undefined ? faults : shardOf(faults, options.shard);
 }
 
 // Returns whether a pattern of --gtest_filter matches a name.
 const matches = (pattern, name) =>
-  new RegExp(`^${pattern.replace(/[.+^${}()|[\]\\]/g, "\\$&").replace(/\*/g, ".*").replace(/\?/g, ".")}$`)
-    .test(name);
+  new RegExp(
+    `^${pattern
+      .replace(/[.+^${}()|[\]\\]/g, "\\$&")
+      .replace(/\*/g, ".*")
+      .replace(/\?/g, ".")}$`,
+  ).test(name);
 
 // ---- the copy ----
 
@@ -74,14 +88,17 @@ const matches = (pattern, name) =>
 // that a second run builds little.
 function copyTree(to) {
   const listed = git("ls-files", "-z", "--cached", "--others", "--exclude-standard");
-  const files = new Set(listed.split("\0").filter((file) => file && statSync(join(kRoot, file), {throwIfNoEntry: false})?.isFile()));
+  const files = new Set(
+    listed.split("\0").filter((file) => file && statSync(join(kRoot, file), { throwIfNoEntry: false })?.isFile()),
+  );
   for (const file of files) {
-    const content = readFileSync(join(kRoot, file)), target = join(to, file);
+    const content = readFileSync(join(kRoot, file)),
+      target = join(to, file);
     if (existsSync(target) && readFileSync(target).equals(content)) continue;
-    mkdirSync(dirname(target), {recursive: true});
+    mkdirSync(dirname(target), { recursive: true });
     writeFileSync(target, content);
   }
-  for (const entry of readdirSync(to, {recursive: true, withFileTypes: true})) {
+  for (const entry of readdirSync(to, { recursive: true, withFileTypes: true })) {
     const path = join(entry.parentPath ?? entry.path, entry.name);
     if (!entry.isDirectory() && !files.has(path.slice(to.length + 1))) rmSync(path);
   }
@@ -92,40 +109,51 @@ class Copy {
     this.source = join(folder, "source");
     this.build = join(folder, "build");
     // ccache ignores the path of the folder, so that a new temporary folder reuses the objects of the last one.
-    this.environment = {CCACHE_BASEDIR: folder, TEST_EXHAUSTIVE: "yes", ...process.env, TEST_ORRERY: join(this.build, "orrery")};
-    mkdirSync(this.source, {recursive: true});
+    this.environment = {
+      CCACHE_BASEDIR: folder,
+      TEST_EXHAUSTIVE: "yes",
+      ...process.env,
+      TEST_ORRERY: join(this.build, "orrery"),
+    };
+    mkdirSync(this.source, { recursive: true });
     copyTree(this.source);
   }
   configure() {
     // Without unity builds a fault recompiles its own file only.
     const flags = ["-DCMAKE_BUILD_TYPE=Release", "-DORRERY_LEVELS=host", "-DORRERY_UNITY=OFF"];
-    const done = run("cmake", ["-G", "Ninja", "-S", this.source, "-B", this.build, ...flags],
-                     {env: this.environment});
+    const done = run("cmake", ["-G", "Ninja", "-S", this.source, "-B", this.build, ...flags], {
+      env: this.environment,
+    });
     if (!done.passed) throw new Stop(`cannot configure the copy:\n${done.output}`);
   }
   buildTargets(targets) {
     const parallel = ["--parallel", String(availableParallelism())];
     const program = targets.some((target) => kTargetsOfTheProgram.includes(target)) ? ["orrery"] : [];
-    return run("cmake", ["--build", this.build, ...parallel, "--target", ...program, ...targets],
-               {env: this.environment});
+    return run("cmake", ["--build", this.build, ...parallel, "--target", ...program, ...targets], {
+      env: this.environment,
+    });
   }
   // Runs the tests that match the patterns. Returns {passed, output, ran, failed}; the last two are test names.
   test(target, patterns) {
-    const environment = {...this.environment};
+    const environment = { ...this.environment };
     for (const name of Object.keys(environment)) if (name.startsWith("GTEST_")) delete environment[name];
     const filter = `--gtest_filter=${patterns.join(":")}`;
-    const {passed, output} = run(join(this.build, "tests", target), [filter], {
-      cwd: this.source, env: environment, timeout: kTestMinutes * 60_000, killSignal: "SIGKILL",
+    const { passed, output } = run(join(this.build, "tests", target), [filter], {
+      cwd: this.source,
+      env: environment,
+      timeout: kTestMinutes * 60_000,
+      killSignal: "SIGKILL",
     });
     const names = (mark) =>
       [...output.matchAll(new RegExp(`^\\[ *${mark} *\\] ([^\\s,]+)`, "gm"))].map((match) => match[1]);
-    const ran = names("RUN"), succeeded = new Set([...names("OK"), ...names("SKIPPED")]);
-    return {passed, output, ran, failed: ran.filter((name) => !succeeded.has(name))};  // or did not end
+    const ran = names("RUN"),
+      succeeded = new Set([...names("OK"), ...names("SKIPPED")]);
+    return { passed, output, ran, failed: ran.filter((name) => !succeeded.has(name)) }; // or did not end
   }
   // Calls act() while `fault` is applied to the copy.
   withFault(fault, act) {
-    const {text, original, problem} = planted(fault, this.source);
-    if (problem) return {caught: false, text: problem};
+    const { text, original, problem } = planted(fault, this.source);
+    if (problem) return { caught: false, text: problem };
     this.change(fault, text);
     try {
       return act();
@@ -135,7 +163,9 @@ class Copy {
   }
   // Keeps the time of the file if units.mjs lists the units to recompile.
   change(fault, text) {
-    const path = join(this.source, fault.file), {atime, mtime} = statSync(path), units = unitsWith(fault);
+    const path = join(this.source, fault.file),
+      { atime, mtime } = statSync(path),
+      units = unitsWith(fault);
     writeFileSync(path, text);
     if (!units) return;
     utimesSync(path, atime, mtime);
@@ -145,7 +175,7 @@ class Copy {
     for (const unit of seen) utimesSync(join(this.source, unit), now, now);
   }
   units() {
-    return readdirSync(this.source, {recursive: true}).filter((path) => path.endsWith(".cpp"));
+    return readdirSync(this.source, { recursive: true }).filter((path) => path.endsWith(".cpp"));
   }
 }
 
@@ -159,11 +189,11 @@ const shown = (names) =>
 // Checks that every pattern matches a test and that all tests pass without a fault.
 function checkSound(copy, faults) {
   const patterns = new Map();
-  for (const {target, tests} of faults) patterns.set(target, [...(patterns.get(target) ?? []), ...tests]);
+  for (const { target, tests } of faults) patterns.set(target, [...(patterns.get(target) ?? []), ...tests]);
   const built = copy.buildTargets([...patterns.keys()]);
   if (!built.passed) throw new Stop(`the copy does not build:\n${tail(built.output)}`);
   for (const [target, wanted] of patterns) {
-    const {passed, output, ran} = copy.test(target, [...new Set(wanted)]);
+    const { passed, output, ran } = copy.test(target, [...new Set(wanted)]);
     if (!passed) throw new Stop(`${target} fails without any fault:\n${tail(output)}`);
     const idle = wanted.filter((pattern) => !ran.some((name) => matches(pattern, name)));
     if (idle.length > 0) throw new Stop(`${target} has no test ${idle.join(", ")}`);
@@ -173,11 +203,11 @@ function checkSound(copy, faults) {
 function check(copy, fault) {
   return copy.withFault(fault, () => {
     const built = copy.buildTargets([fault.target]);
-    if (!built.passed) return {caught: false, text: `does not build:\n${tail(built.output)}`};
-    const {passed, failed} = copy.test(fault.target, fault.tests);
+    if (!built.passed) return { caught: false, text: `does not build:\n${tail(built.output)}` };
+    const { passed, failed } = copy.test(fault.target, fault.tests);
     const blind = fault.tests.filter((pattern) => !failed.some((name) => matches(pattern, name)));
-    if (passed || blind.length > 0) return {caught: false, text: `passes ${blind.join(", ")}`};
-    return {caught: true, text: `fails ${shown(failed)}`};
+    if (passed || blind.length > 0) return { caught: false, text: `passes ${blind.join(", ")}` };
+    return { caught: true, text: `fails ${shown(failed)}` };
   });
 }
 
@@ -203,16 +233,18 @@ function readArguments() {
   const args = process.argv.slice(2);
   const bare = args.indexOf("--changed");
   if (bare >= 0 && (bare + 1 === args.length || args[bare + 1].startsWith("-"))) args[bare] = "--changed=";
-  const text = {type: "string"};
+  const text = { type: "string" };
   return parseArgs({
-    args, options: {folder: text, shard: text, changed: text, compile: {type: "boolean"}}, allowPositionals: true,
+    args,
+    options: { folder: text, shard: text, changed: text, compile: { type: "boolean" } },
+    allowPositionals: true,
   });
 }
 
 async function main() {
-  const {values: options, positionals} = readArguments();
+  const { values: options, positionals } = readArguments();
   const faults = chosen(options, positionals);
-  const faces = new Set(faults.map(({fault}) => fault)).size;
+  const faces = new Set(faults.map(({ fault }) => fault)).size;
   if (options.compile) {
     const compiling = await compileFaults(faults);
     console.log(`faults: ${compiling} of ${faults.length} compile, faces of ${faces}`);
@@ -224,7 +256,7 @@ async function main() {
     console.log(`faults: ${caught} of ${faults.length} caught, faces of ${faces}`);
     return caught === faults.length;
   } finally {
-    if (!options.folder) rmSync(folder, {recursive: true, force: true});
+    if (!options.folder) rmSync(folder, { recursive: true, force: true });
   }
 }
 

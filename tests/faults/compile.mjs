@@ -2,29 +2,30 @@
 // own, which is first in the include path. The compiler reads a source that includes it with -fsyntax-only and the
 // flags of build/compile_commands.json.
 
-import {spawn} from "node:child_process";
-import {existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync} from "node:fs";
-import {availableParallelism, tmpdir} from "node:os";
-import {dirname, join} from "node:path";
+import { spawn } from "node:child_process";
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { availableParallelism, tmpdir } from "node:os";
+import { dirname, join } from "node:path";
 
-import {kRoot, planted} from "./planted.mjs";
+import { kRoot, planted } from "./planted.mjs";
 
 // Returns the sources that build/ compiles, as a map from their path to {command, directory}.
 function readCommands() {
   const file = join(kRoot, "build/compile_commands.json");
   if (!existsSync(file)) throw new Error(`${file} is missing: run script/setup`);
   const commands = new Map();
-  for (const {file: compiled, command, directory} of JSON.parse(readFileSync(file, "utf8")))
+  for (const { file: compiled, command, directory } of JSON.parse(readFileSync(file, "utf8")))
     for (const source of sourcesOf(compiled))
       if (source.startsWith(`${kRoot}/core/`) || source.startsWith(`${kRoot}/server/`))
-        commands.set(source.slice(kRoot.length + 1), {command, directory});
+        commands.set(source.slice(kRoot.length + 1), { command, directory });
   return commands;
 }
 
 // Returns the sources that a file of a unity build includes, or the file itself.
 const sourcesOf = (file) =>
-  !file.includes("/Unity/") ? [file] :
-    [...readFileSync(file, "utf8").matchAll(/^#include "([^"]+)"/gm)].map((match) => match[1]);
+  !file.includes("/Unity/")
+    ? [file]
+    : [...readFileSync(file, "utf8").matchAll(/^#include "([^"]+)"/gm)].map((match) => match[1]);
 
 const includesOf = (path) =>
   [...readFileSync(join(kRoot, path), "utf8").matchAll(/^#include "([^"]+)"/gm)]
@@ -44,38 +45,48 @@ function sourceFor(file, commands) {
   const namesake = file.replace(/\.h$/, ".cpp");
   if (commands.has(namesake)) return namesake;
   const users = [...commands.keys()].filter((source) => reaches(source, file));
-  return users.find((source) => dirname(source) === dirname(file) && includesOf(source).includes(file)) ??
-    users.find((source) => dirname(source) === dirname(file)) ?? users[0];
+  return (
+    users.find((source) => dirname(source) === dirname(file) && includesOf(source).includes(file)) ??
+    users.find((source) => dirname(source) === dirname(file)) ??
+    users[0]
+  );
 }
 
 // Resolves to the first error message of a command, or to "" if it succeeds.
 function complaintsFrom(command, args, cwd) {
   return new Promise((done) => {
-    const child = spawn(command, args, {cwd, stdio: ["ignore", "ignore", "pipe"]});
+    const child = spawn(command, args, { cwd, stdio: ["ignore", "ignore", "pipe"] });
     let output = "";
-    child.stderr.on("data", (data) => { output += data; });
+    child.stderr.on("data", (data) => {
+      output += data;
+    });
     child.on("close", (status) =>
-      done(status === 0 ? "" : output.split("\n").find((line) => /error/i.test(line)) ?? `status ${status}`));
+      done(status === 0 ? "" : (output.split("\n").find((line) => /error/i.test(line)) ?? `status ${status}`)),
+    );
   });
 }
 
 // Resolves to the compiler's first error, or to "" if the code compiles.
 async function complaintsOf(fault, commands) {
-  const {text, problem} = planted(fault);
+  const { text, problem } = planted(fault);
   if (problem) return problem;
   const source = sourceFor(fault.file, commands);
   if (!source) return `no source includes ${fault.file}`;
   const folder = mkdtempSync(join(tmpdir(), "orrery-fault-"));
   try {
     const changed = join(folder, fault.file);
-    mkdirSync(dirname(changed), {recursive: true});
+    mkdirSync(dirname(changed), { recursive: true });
     writeFileSync(changed, text);
-    const {command, directory} = commands.get(source);
+    const { command, directory } = commands.get(source);
     const [compiler, ...flags] = command.slice(0, command.indexOf(" -o ")).split(" ");
     const read = source === fault.file ? changed : join(kRoot, source);
-    return await complaintsFrom("sh", ["-c", [compiler, `-I${folder}`, ...flags, "-w", "-fsyntax-only", read].join(" ")], directory);
+    return await complaintsFrom(
+      "sh",
+      ["-c", [compiler, `-I${folder}`, ...flags, "-w", "-fsyntax-only", read].join(" ")],
+      directory,
+    );
   } finally {
-    rmSync(folder, {recursive: true});
+    rmSync(folder, { recursive: true });
   }
 }
 
@@ -91,6 +102,6 @@ export async function compileFaults(faults) {
       else ++compiling;
     }
   };
-  await Promise.all(Array.from({length: availableParallelism()}, work));
+  await Promise.all(Array.from({ length: availableParallelism() }, work));
   return compiling;
 }

@@ -10,11 +10,11 @@
 // The list holds the ten mistakes of textbooks and those that only a statistical test or a test under load can
 // detect. Other tests need no entry: break the code once by hand and see the test fail.
 
-import {certificateFaults} from "./certificates.mjs";
-import {serviceFaults} from "./service.mjs";
-import {structureFaults} from "./structures.mjs";
-import {textbookFaults} from "./textbook.mjs";
-import {transportFaults} from "./transport.mjs";
+import { certificateFaults } from "./certificates.mjs";
+import { serviceFaults } from "./service.mjs";
+import { structureFaults } from "./structures.mjs";
+import { textbookFaults } from "./textbook.mjs";
+import { transportFaults } from "./transport.mjs";
 
 export const faults = [
   ...textbookFaults,

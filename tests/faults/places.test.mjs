@@ -2,26 +2,31 @@
 // Checks that every fault of faults.mjs applies: its text occurs exactly once in its file and changes, and the sources
 // of its target define its tests.
 
-import {existsSync, readdirSync, readFileSync} from "node:fs";
-import {join} from "node:path";
+import { existsSync, readdirSync, readFileSync } from "node:fs";
+import { join } from "node:path";
 
-import {faults} from "./faults.mjs";
-import {kRoot, planted} from "./planted.mjs";
+import { faults } from "./faults.mjs";
+import { kRoot, planted } from "./planted.mjs";
 
 // Returns the text of all sources of a test executable.
 function sourcesOf(target) {
   const folder = join(kRoot, "tests", target.replace(/^test_/, ""));
   if (!existsSync(folder)) return "";
-  return readdirSync(folder).filter((name) => name.endsWith(".cpp"))
-    .map((name) => readFileSync(join(folder, name), "utf8")).join("\n");
+  return readdirSync(folder)
+    .filter((name) => name.endsWith(".cpp"))
+    .map((name) => readFileSync(join(folder, name), "utf8"))
+    .join("\n");
 }
 
 // Returns whether the sources define the suite of a pattern.
 const names = (sources, pattern) =>
-  pattern.split(".")[0].split("/").some((suite) => sources.includes(`(${suite},`));
+  pattern
+    .split(".")[0]
+    .split("/")
+    .some((suite) => sources.includes(`(${suite},`));
 
 function problemOf(fault) {
-  const {problem} = planted(fault);
+  const { problem } = planted(fault);
   if (problem) return problem;
   const sources = sourcesOf(fault.target);
   const unknown = fault.tests.filter((pattern) => !names(sources, pattern));

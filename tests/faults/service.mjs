@@ -6,7 +6,7 @@ export const serviceFaults = [
     fault: 14,
     about: "the last of two Content-Length headers counts",
     file: "server/http/head.cpp",
-    from: "if (head.content_length) throw HttpError(400, \"duplicate Content-Length header\");",
+    from: 'if (head.content_length) throw HttpError(400, "duplicate Content-Length header");',
     to: "",
     target: "test_http",
     tests: ["Http/MalformedRequests.*/TwoLengths", "Http/MalformedRequests.*/TwoEqualLengths"],

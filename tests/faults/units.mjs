@@ -1,12 +1,12 @@
 // The translation units to compile for a fault in a header that most units include. Keys are the header and the test
 // executable, values are prefixes of paths.
 const unitsByHeader = {
-  "core/math/bounds.h": {test_math: ["tests/math/"]},
-  "core/math/sampling.h": {test_stability: ["core/stability/"]},
-  "core/model/bound.h": {test_render: ["core/render/certificate.cpp"]},
-  "core/stability/row.h": {test_stability: ["core/stability/report.cpp", "tests/stability/"]},
-  "server/app/single_flight.h": {test_app: ["tests/app/"]},
+  "core/math/bounds.h": { test_math: ["tests/math/"] },
+  "core/math/sampling.h": { test_stability: ["core/stability/"] },
+  "core/model/bound.h": { test_render: ["core/render/certificate.cpp"] },
+  "core/stability/row.h": { test_stability: ["core/stability/report.cpp", "tests/stability/"] },
+  "server/app/single_flight.h": { test_app: ["tests/app/"] },
 };
 
 // Returns undefined if all units that include the file are to be compiled.
-export const unitsWith = ({file, target}) => unitsByHeader[file]?.[target];
+export const unitsWith = ({ file, target }) => unitsByHeader[file]?.[target];

@@ -79,12 +79,14 @@ void check_answers(std::string_view bytes) {
     }
     const std::size_t at = head.find("\r\nContent-Length: ");
     if (at == std::string::npos) {
-      if (bytes.starts_with("part")) bytes.remove_prefix(4);  // HTTP/1.0: up to the end
+      // An HTTP/1.0 body extends to the end of the connection.
+      if (bytes.starts_with("part")) bytes.remove_prefix(4);
       continue;
     }
     const std::size_t length = std::strtoul(head.c_str() + at + 18, nullptr, 10);
-    if (bytes.starts_with("HTTP/1.1 ")) continue;  // HEAD
-    if (bytes.empty()) return;                     // the last response, to HEAD
+    // The next response follows at once: this one answered HEAD and has no body.
+    if (bytes.starts_with("HTTP/1.1 ")) continue;
+    if (bytes.empty()) return;  // the last response, to HEAD
     require(length <= bytes.size());
     bytes.remove_prefix(length);
   }

@@ -128,7 +128,7 @@ TEST(Health, CountsCacheHitsAndMisses) {
   const std::string told = metrics(daemon);
   EXPECT_EQ(value_of(told, "orrery_cache_misses_total{cache=\"scenes\"}"), 2);  // loaded
   EXPECT_EQ(value_of(told, "orrery_cache_hits_total{cache=\"scenes\"}"), 3);
-  EXPECT_EQ(value_of(told, "orrery_cache_misses_total{cache=\"pictures\"}"), 2);  // rendered
+  EXPECT_EQ(value_of(told, "orrery_cache_misses_total{cache=\"pictures\"}"), 2);  // encoded
   EXPECT_EQ(value_of(told, "orrery_cache_hits_total{cache=\"pictures\"}"), 4);
   EXPECT_EQ(value_of(told, "orrery_cache_misses_total{cache=\"films\"}"), 2);
   EXPECT_EQ(value_of(told, "orrery_cache_hits_total{cache=\"films\"}"), 0);

@@ -44,7 +44,7 @@ TEST_F(Info, ServesValidSceneForEverySample) {
   }
 }
 
-TEST_F(Info, ServesThumbnailForEverySample) {
+TEST_F(Info, ServesThumbnailForEverySampleScene) {
   const auto catalog = get_json("/v1/catalog");
   ASSERT_FALSE(catalog.at("samples").empty());
   for (const auto& sample : catalog.at("samples")) {

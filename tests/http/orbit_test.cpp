@@ -310,7 +310,7 @@ TEST_F(OrbitStream, SkipsFramesOnlyForSlowViewer) {
 TEST_F(OrbitStream, SkipsOverdueFramesForSingleSlowViewer) {
   const SlowViewer slow(daemon().port(), path(kLargeFrames + "&fps=10"));
   std::this_thread::sleep_for(std::chrono::milliseconds(2500));  // longer than the orbit
-  ASSERT_TRUE(daemon().wait_until_idle());                       // slow rendering: until no frame is sent
+  ASSERT_TRUE(daemon().wait_until_idle());  // rendering may be slow: wait until no more frames are sent
   std::this_thread::sleep_for(std::chrono::milliseconds(1000));  // 10 frames are due meanwhile
   expect_some_skipped(slow.receive());
 }

@@ -1,7 +1,6 @@
 #!/usr/bin/env node
-// The arrangement of the source tree: who may include whom, what a registry must list, how long a file may
-// be. Without arguments it judges this repository; with --self-test it judges small trees that each break
-// a rule.
+// Checks the source tree: allowed includes, complete registries, file length. Without arguments it checks this
+// repository; with --self-test, small trees that each break one rule.
 
 import { mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";

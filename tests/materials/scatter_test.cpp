@@ -196,7 +196,8 @@ TEST_P(Scattering, WeightsSamplesByEvaluation) {
   }
 }
 
-// In float the direction itself is off by 1e-7, and the narrowest lobe is 0.09 wide.
+// Float rounding shifts directions by 1e-7 and the narrowest lobe is 0.09 wide; the tolerances allow for
+// this.
 TEST_P(Scattering, AgreesInFloatAndDouble) {
   const Probe<double> exact(GetParam().text);
   const Probe<float> single(GetParam().text);

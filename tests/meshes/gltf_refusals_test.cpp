@@ -117,7 +117,7 @@ TEST(Gltf, RejectsInvalidDocuments) {
   EXPECT_EQ(problem("{}"), "/: missing key \"asset\"");
   EXPECT_EQ(problem(R"({"asset":{"version":"1.0"}})"), "/asset/version: must be \"2.0\" (got \"1.0\")");
   EXPECT_THAT(problem(R"({"nodes":)" + std::string(100'000, '[')),
-              HasSubstr("JSON nesting has more than 32 levels (limit 32)"));
+              HasSubstr("JSON is nested too deeply (limit 32 levels)"));
   std::string many = R"({"nodes":[0)";
   for (int i = 0; i < 1'000'000; ++i) many += ",0";
   EXPECT_THAT(problem(many + "]}"), HasSubstr("more than 1,000,000 JSON values (limit 1,000,000)"));
@@ -133,7 +133,7 @@ TEST(Gltf, RejectsInvalidContainers) {
   EXPECT_EQ(problem("glTF"), "file must begin with a GLB header of 12 bytes (got 4)");
   EXPECT_EQ(changed(4, 1), "byte 4: must be GLB version 2 (got 1)");
   EXPECT_THAT(changed(8, static_cast<std::uint32_t>(good.size()) + 1),
-              HasSubstr("byte 8: must be a GLB length of at most"));
+              HasSubstr("byte 8: GLB length must be at most the file size"));
   EXPECT_THAT(changed(12, 0xffffffff), HasSubstr("byte 12: must be a GLB chunk of at most"));
   EXPECT_THAT(changed(16, 0), HasSubstr("byte 12: must be a GLB chunk \"JSON\" with content (got none)"));
   std::uint32_t json;

@@ -192,7 +192,7 @@ TEST(JsonParser, RejectsNumbersBeyondDoubleRange) {
 TEST(JsonLimits, RejectsDepthAboveLimit) {
   EXPECT_NO_THROW(parse_document(nested(32)));
   const InputError error = input_error(nested(33));
-  EXPECT_EQ(error.problems().front().detail, "JSON nesting has more than 32 levels (limit 32, json_depth)");
+  EXPECT_EQ(error.problems().front().detail, "JSON is nested too deeply (limit 32 levels, json_depth)");
   input_error(nested(1'000'000));  // neither recursion nor time grows with the depth
   EXPECT_NO_THROW(parse_document(nested(5), {.depth = 5}));
   input_error(nested(6), {.depth = 5});

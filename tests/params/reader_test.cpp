@@ -169,7 +169,7 @@ TEST(Reader, ReportsAllowedScalarValues) {
              "/f: must be true or false (got 1)",
              R"(/c: must be "phong" or "blinn-phong" (got "blin-phong"; did you mean "blinn-phong"?))",
              R"(/d: must be "phong" or "blinn-phong" (got 4))",
-             R"(/t: must be a text of at most 2 characters (got "abc"))"}));
+             R"(/t: must be a string of at most 2 characters (got "abc"))"}));
 }
 
 TEST(Reader, NormalizesDirections) {

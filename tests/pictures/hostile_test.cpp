@@ -58,7 +58,7 @@ std::string progressive_jpeg(int width, int height, int components, int scans) {
                       big_endian(static_cast<std::uint32_t>(width)).substr(2) + static_cast<char>(components);
   for (int i = 1; i <= components; ++i) frame += std::string{static_cast<char>(i), '\x11', '\0'};
   file += jpeg_segment('\xc2', frame);
-  // Codes: 0 for a run of 2^14 blocks and more, 10 for the end of one block.
+  // Huffman codes: 0 = end-of-band run of at least 2^14 blocks, 10 = end of band in one block.
   file += jpeg_segment('\xc4', "\x10\1\1"s + std::string(14, '\0') + "\xe0\0"s);
   std::string bits;
   int left = (width + 7) / 8 * ((height + 7) / 8);

@@ -96,8 +96,8 @@ TEST(Pictures, RejectsTruncatedFiles) {
 // Sizes in a header are compared with the limits before anything is decoded.
 TEST(Pictures, ChecksHeaderSizesBeforeDecoding) {
   EXPECT_EQ(refusal(hdr(4, 2, 2'000'000'000)),
-            "HDR: image has 4 x 2000000000 texels (limit 1 to 16,384 per side, picture_side, and 33,554,432 "
-            "in all, picture_texels)");
+            "HDR: image has 4 x 2000000000 texels (limits: 1 to 16,384 per side [picture_side], 33,554,432 "
+            "in total [picture_texels])");
   EXPECT_NE(refusal(hdr(4, 2, 0)), "accepted");
   std::string png = encode_png(coded_image(8, 8, 1));
   const auto state = [&png](std::uint32_t width, std::uint32_t height) {
@@ -125,8 +125,8 @@ TEST(Pictures, RejectsCostlyJpegBeforeDecoding) {
   const std::string frame = "\xff\xc2\x00\x0b\x08\x2e\xe0\x5d\xc0\x01\x01\x11\x00"s,
                     scan = "\xff\xda\x00\x08\x01\x01\x00\x00\x00\x00"s;
   EXPECT_EQ(refusal("\xff\xd8" + frame + scan + "\xff\xd9"),
-            "JPEG: image has 24000 x 12000 texels (limit 1 to 16,384 per side, picture_side, and 33,554,432 "
-            "in all, picture_texels)");
+            "JPEG: image has 24000 x 12000 texels (limits: 1 to 16,384 per side [picture_side], 33,554,432 "
+            "in total [picture_texels])");
   EXPECT_EQ(refusal("\xff\xd8" + scan + "\xff\xd9"), "JPEG: damaged at byte 2: scan precedes the image size");
   std::string many = encode_jpeg(coded_image(8, 8, 1));
   for (int i = 0; i < 256; ++i) many.insert(many.size() - 2, scan);

@@ -17,7 +17,7 @@ namespace {
 
 RenderSettings read(const Json& request) { return read_request(document_of(request)); }
 
-// Returns the problem of the value with its pointer, as "/render/samples: expected ...", or "" if the value
+// Returns the problem of the value with its pointer, as "/render/samples: must be ...", or "" if the value
 // is valid.
 std::string problem(const RenderOption& option, const Json& value) {
   try {

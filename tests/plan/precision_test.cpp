@@ -110,7 +110,7 @@ TEST(Precision, UsesFloatWithoutVisibleErrorForSampleScenes) {
 }
 
 // Includes layers that approach each other only later.
-TEST(Precision, ConsidersNarrowestMomentOfMotion) {
+TEST(Precision, UsesSmallestGapDuringMotion) {
   const auto scene = load(from_file("tests/scenes/closing_gap.json"));
   EXPECT_TRUE(make_plan(*scene, {}).double_precision);
 }
@@ -129,7 +129,7 @@ TEST(Precision, ReportsReasonForDouble) {
   EXPECT_THAT(reason("plane_point_1e+06_away"), testing::HasSubstr("(/objects/0)"));
   EXPECT_THAT(reason("tube_point_100000_away"), testing::HasSubstr("(/objects/0)"));
   EXPECT_THAT(reason("decal_1e-07_above_floor"), testing::HasSubstr("/objects/0 is 9.99"));
-  EXPECT_THAT(reason("bubble_1e-06_thick"), testing::HasSubstr("from the next surface"));
+  EXPECT_THAT(reason("bubble_1e-06_thick"), testing::HasSubstr("from the nearest other surface"));
   EXPECT_THAT(reason("film_1e-06_thick_10_wide"), testing::HasSubstr("/objects/0 is 9.99"));
   EXPECT_THAT(reason("mirror_tubes_0.3_depth_5"), testing::HasSubstr("each of 5 reflections"));
   EXPECT_THAT(reason("mesh_of_size_1e-14"), testing::HasSubstr("underflow in float"));

@@ -9,7 +9,7 @@
 namespace orrery {
 namespace {
 
-// Returns the next word of a PPM header. A word with # starts a comment.
+// Returns the next word of a PPM header. A word that begins with # starts a comment.
 std::string header_word(std::istream& in) {
   std::string word;
   while (in >> word && word[0] == '#') in.ignore(std::numeric_limits<std::streamsize>::max(), '\n');

@@ -64,7 +64,7 @@ TEST(Accumulation, KeepsConstantAtMaximumSamples) {
   EXPECT_EQ(accumulator.film.image(PixelFormat::linear32).linear(0, 0).x, 0.1f);
 }
 
-// Adds values that single precision would lose: one half to half of 10^8.
+// Adds values that single precision would lose: adds 0.5 to a sum of 5e7.
 TEST(Accumulation, StaysExactAtHundredMillionSamples) {
   covers("light-10");
   constexpr int kAll = 100'000'000, kLast = 64;

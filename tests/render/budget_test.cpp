@@ -249,7 +249,7 @@ TEST(ErrorBudget, CountsManyWeakRays) {
   EXPECT_FALSE(result.budget->error_met);
 }
 
-TEST(ErrorBudget, TerminatesForSingleTilePaths) {
+TEST(ErrorBudget, TerminatesForPathTracedImageOfOneTile) {
   const auto scene = test::load(test::sample("cornell-box"));
   EXPECT_LE(*rendered(scene, with_error(32, 0.5, Space::linear)).budget->settings.samples, 16);
 }
@@ -284,7 +284,7 @@ TEST(ErrorBudget, ReportsUnprovableError) {
   covers("certificate-16 certificate-35");
   const auto scene = test::load(test::sample("paper"));
   RenderRequest r = with_error(64, 0.0005, Space::display);
-  EXPECT_NE(rendered(scene, r).budget->reason.find("error apart from sampling may be 0.001"),
+  EXPECT_NE(rendered(scene, r).budget->reason.find("errors other than sampling noise may reach 0.001"),
             std::string::npos)
       << rendered(scene, r).budget->reason;
   r.error = 0.004;  // below the provable error of 64 x 64 pixels

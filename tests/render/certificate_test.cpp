@@ -474,7 +474,7 @@ TEST(Clamp, KeepsDirectLight) {
 }
 
 // The ledger of passes is at least that of the whole render.
-TEST(Certificate, BoundsWholeRenderFromPasses) {
+TEST(Certificate, SumsPassLedgersForWholeRender) {
   const auto loaded = test::load(test::sample("material-refractive"));
   RenderRequest r = request(2);
   r.samples = 8;

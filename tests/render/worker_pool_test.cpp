@@ -125,8 +125,8 @@ TEST(WorkerPool, ResumesYieldedStepsInTurn) {
   EXPECT_TRUE(seen) << present;
 }
 
-// Pass that expires once, and is renewed on request.
-struct OnePass final : SlotLease {
+// Lease that expires once, and is renewed on request.
+struct OneLease final : SlotLease {
   bool expired() const override { return !asked.exchange(true); }
   void renew() override {
     paused = true;
@@ -141,7 +141,7 @@ struct OnePass final : SlotLease {
 
 TEST(WorkerPool, RunsNoStepDuringLeaseRenewal) {
   WorkerPool pool(2);
-  OnePass pass;
+  OneLease lease;
   std::atomic<std::uint64_t> progress = 0;
   std::atomic<bool> ends = false;
   std::thread caller([&] {
@@ -151,9 +151,9 @@ TEST(WorkerPool, RunsNoStepDuringLeaseRenewal) {
           while (!ends) ++progress, turn.yield();
           return true;
         },
-        &pass);
+        &lease);
   });
-  EXPECT_TRUE(test::eventually([&] { return pass.paused.load(); }));
+  EXPECT_TRUE(test::eventually([&] { return lease.paused.load(); }));
   // Running steps yield at the end of their time slices. After that nothing continues, though the pool is
   // free.
   EXPECT_TRUE(test::eventually([&] {
@@ -163,7 +163,7 @@ TEST(WorkerPool, RunsNoStepDuringLeaseRenewal) {
     return progress == before;
   }));
   const std::uint64_t before = progress;
-  pass.give_back.release();
+  lease.give_back.release();
   EXPECT_TRUE(test::eventually([&] { return progress > before; }));
   ends = true;
   caller.join();
@@ -171,15 +171,15 @@ TEST(WorkerPool, RunsNoStepDuringLeaseRenewal) {
 
 TEST(WorkerPool, EndsLoopIfLeaseRenewalFails) {
   WorkerPool pool(1);
-  OnePass pass;
-  pass.fails = true;
-  pass.give_back.release();
+  OneLease lease;
+  lease.fails = true;
+  lease.give_back.release();
   std::atomic<int> begun = 0;
   const auto work = [&](int, int, TimeSlice& turn) {
     ++begun;
-    return give_way_until(pass.paused, turn);
+    return give_way_until(lease.paused, turn);
   };
-  EXPECT_THROW(pool.for_each(100, kForeground, work, &pass), std::runtime_error);
+  EXPECT_THROW(pool.for_each(100, kForeground, work, &lease), std::runtime_error);
   EXPECT_EQ(begun, 1);
 }
 

@@ -32,9 +32,9 @@ Point point(double cpu_ms, double rmse, int samples = 1) { return point({{cpu_ms
 
 std::vector<ParetoStatus> front_of(std::vector<Point> points, double floor = 0) {
   mark_pareto_front(points, floor);
-  std::vector<ParetoStatus> standings;
-  for (const Point& p : points) standings.push_back(p.pareto_status);
-  return standings;
+  std::vector<ParetoStatus> statuses;
+  for (const Point& p : points) statuses.push_back(p.pareto_status);
+  return statuses;
 }
 
 using testing::ElementsAre;

@@ -7,7 +7,7 @@
 
 namespace orrery::test {
 
-// Records the rows of the stability catalogue that the running test covers ("A1 A3"). script/test prints
+// Records the rows of docs/stability-catalogue.md that the running test covers ("A1 A3"). script/test prints
 // them.
 inline void covers(const char* rows) { testing::Test::RecordProperty("stability", rows); }
 
