@@ -63,7 +63,13 @@ function scene(level) {
     "floor": { "type": "rough", "kd": [0.09, 0.13, 0.22] }
   },
   "lights": [
-    ${[[4, 3, 2], [1, -4, 4], [-3, 1, 5]].map(light).join(",\n    ")}
+    ${[
+      [4, 3, 2],
+      [1, -4, 4],
+      [-3, 1, 5],
+    ]
+      .map(light)
+      .join(",\n    ")}
   ],
   "objects": [
     { "type": "plane", "point": [0, 0, -0.5], "normal": [0, 0, 1], "material": "floor" },

@@ -3,17 +3,17 @@
 
 import { recall, remember } from "./storage.js";
 
-const kStorageKey = "orrery.token";
+const STORAGE_KEY = "orrery.token";
 
-let token = recall(kStorageKey) ?? "";
+let token = recall(STORAGE_KEY) ?? "";
 let asking = null;
 
-export const access_token = () => token;
+export const accessToken = () => token;
 
 export const bearer = () => (token ? { Authorization: `Bearer ${token}` } : {});
 
 // Asks for another token after the service rejected `sent`. Resolves to false if the user closed the form.
-export function other_token(sent) {
+export function askForToken(sent) {
   if (sent !== token) return Promise.resolve(true);
   asking ??= ask(document.getElementById("access"), sent !== "").finally(() => (asking = null));
   return asking;
@@ -21,12 +21,12 @@ export function other_token(sent) {
 
 function ask(dialog, refused) {
   const field = dialog.querySelector("input");
-  dialog.querySelector("p").textContent = refused ? "The service did not accept this token." : "";
+  dialog.querySelector("p").textContent = refused ? "The service did not accept this access token." : "";
   dialog.returnValue = "";
   dialog.showModal();
   return new Promise((resolve) => {
     const close = () => {
-      if (dialog.returnValue) remember(kStorageKey, (token = field.value));
+      if (dialog.returnValue) remember(STORAGE_KEY, (token = field.value));
       field.value = "";
       resolve(dialog.returnValue !== "");
     };

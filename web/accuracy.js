@@ -1,7 +1,7 @@
 // Speed and accuracy controls of the page: chart and slider, budgets, and the picture's own error.
 
-import { attach_budgets, budget_of, told_of } from "./budget.js";
-import { ChartDialog } from "./chart_dialog.js";
+import { attachBudgets, budgetOf, budgetStatus } from "./budget.js";
+import { ChartDialog } from "./chart-dialog.js";
 import { Overlay } from "./overlay.js";
 import { Tradeoff } from "./tradeoff.js";
 
@@ -9,17 +9,18 @@ const $ = (id) => document.getElementById(id);
 
 // `on` has
 //   picture() -> the picture at rest without plan and budget, or null
-//   within({seconds, error}) -> the same with a budget
-//   seen() -> address of the picture on the stage, or null
+//   withBudget({seconds, error}) -> the same with a budget
+//   shownAddress() -> address of the picture on the stage, or null
 //   pause()
 //   set({plan, seconds, error}), at most one of them set
-// Returns `{show(), rest(), stale(), leave(), mark(state), tell(figures, state)}`.
-export function attach_accuracy(on) {
+//   announce(text), for screen readers
+// Returns {hideOverlay()}, for moves of the view.
+export function attachAccuracy(store, on) {
   const overlay = new Overlay($("overlay"));
   const dialog = new ChartDialog($("chart"), $("show-chart"), (index) => tradeoff.choose(index));
   const chips = [...document.querySelectorAll("#budgets button")];
   const parts = {
-    budgets: chips.map(budget_of),
+    budgets: chips.map(budgetOf),
     make: $("make-chart"),
     progress: $("chart-progress"),
     part: $("chart-part"),
@@ -34,36 +35,42 @@ export function attach_accuracy(on) {
   };
   const tradeoff = new Tradeoff(parts, overlay, {
     picture: on.picture,
-    within: on.within,
-    seen: on.seen,
+    withBudget: on.withBudget,
+    shownAddress: on.shownAddress,
     pause: on.pause,
     use: (plan) => on.set({ plan, seconds: 0, error: 0 }),
     chart: (drawing, points) => dialog.show(drawing, points),
-    say: (text) => ($("announcement").textContent = text),
+    announce: on.announce,
   });
-  const mark_budgets = attach_budgets(chips, (budget) => {
+  attachBudgets(chips, store, (budget) => {
     on.set({ plan: "", ...budget });
     // Orbits ignore budgets.
     if (budget.seconds || budget.error) on.pause();
   });
   $("drop-plan").addEventListener("click", () => on.set({ plan: "", seconds: 0, error: 0 }));
-  return {
-    show: () => tradeoff.show(on.picture()),
-    rest: () => tradeoff.rest(),
-    stale: () => {
-      tradeoff.stale();
-      say({ missed: false, text: "" });
-    },
-    leave: () => tradeoff.leave(),
-    mark: (state) => {
-      mark_budgets(state);
-      $("drop-plan").hidden = !state.plan;
-    },
-    tell: (figures, state) => say(told_of(figures, state)),
-  };
+  attachStatus(store);
+
+  store.subscribe(["scene", "technique"], () => tradeoff.setPicture(on.picture()));
+  store.subscribe(["scene", "technique", "samples", "size", "plan", "seconds", "error"], () => tradeoff.hideOverlay());
+  store.subscribe(["playing"], ({ playing }) => playing && tradeoff.hideOverlay());
+  store.subscribe(["shows"], ({ shows, playing }) => {
+    if (shows === "still" && !playing) tradeoff.predictBudgets();
+    else if (shows === "") tradeoff.cancelPrediction();
+  });
+  return { hideOverlay: () => tradeoff.hideOverlay() };
 }
 
-function say({ missed, text }) {
-  $("told").textContent = $("told").title = text;
-  $("told").classList.toggle("missed", missed);
+// Shows the error of a picture at rest that was made with a plan or a budget.
+function attachStatus(store) {
+  const status = $("budget-status");
+  const show = ({ missed, text }) => {
+    status.textContent = status.title = text;
+    status.classList.toggle("missed", missed);
+  };
+  store.subscribe(["figures"], ({ figures, ...settings }) => {
+    // A still of a held orbit is rendered without a budget.
+    if (figures?.kind === "still" && figures.bound && !settings.playing) show(budgetStatus(figures, settings));
+  });
+  store.subscribe(["shows"], ({ shows }) => shows === "" && show({ missed: false, text: "" }));
+  store.subscribe(["plan"], ({ plan }) => ($("drop-plan").hidden = !plan));
 }

@@ -1,41 +1,47 @@
 // Requests to the service. Every failure but an abort throws ApiError.
 
-import { access_token, bearer, other_token } from "./access.js";
+import { accessToken, bearer, askForToken } from "./access.js";
 
-const kRetryable = new Set([0, 429, 502, 503]); // 0: no response
+const RETRYABLE_STATUSES = new Set([0, 429, 502, 503]); // 0: no response
 
 // Error response (problem+json of RFC 9457), or no response at all: status 0.
 export class ApiError extends Error {
-  constructor(fields) {
-    super(fields.title ?? "The request failed");
+  // Takes the members of a problem+json.
+  constructor({ title, status, detail, request_id: requestId, retry_after_seconds: retryAfterSeconds, ...more }) {
+    super(title ?? "The request failed");
     this.name = "ApiError";
-    // Optional fields from the service: errors, line and column, retry_after_seconds.
-    Object.assign(this, { status: 0, detail: "", request_id: "" }, fields, { title: this.message });
+    this.title = this.message;
+    this.status = status ?? 0;
+    this.detail = detail ?? "";
+    this.requestId = requestId ?? "";
+    this.retryAfterSeconds = retryAfterSeconds;
+    const { errors, line, column } = more;
+    Object.assign(this, { errors, line, column }); // places in a rejected text
   }
 
   // Returns whether the same request may succeed later.
   get retryable() {
-    return kRetryable.has(this.status);
+    return RETRYABLE_STATUSES.has(this.status);
   }
 }
 
-export function no_answer(detail = "") {
-  return new ApiError({ status: 0, title: "The service does not answer", detail });
+export function connectionError(detail = "") {
+  return new ApiError({ status: 0, title: "The service does not respond", detail });
 }
 
-export function is_abort(error) {
+export function isAbort(error) {
   return error?.name === "AbortError";
 }
 
 // Returns the error to throw if a response breaks off with `error`.
-export const broken = (error) => (is_abort(error) ? error : no_answer(error.message));
+export const toApiError = (error) => (isAbort(error) ? error : connectionError(error.message));
 
-async function problem_of(response) {
+async function problemOf(response) {
   const fields = { status: response.status, title: response.statusText || `Status ${response.status}` };
   try {
     Object.assign(fields, JSON.parse(await response.text()));
   } catch (error) {
-    if (is_abort(error)) throw error; // not JSON: falls back to the status line
+    if (isAbort(error)) throw error; // not JSON: falls back to the status line
   }
   const seconds = Number(response.headers.get("Retry-After"));
   return new ApiError({
@@ -48,43 +54,43 @@ async function problem_of(response) {
 
 // Resolves to a successful response of fetch(). Throws ApiError, or AbortError once `signal` fires.
 export async function request(path, options = {}) {
-  const token = access_token();
+  const token = accessToken();
   let response;
   try {
     response = await fetch(path, { ...options, headers: { ...options.headers, ...bearer() } });
   } catch (error) {
-    throw broken(error);
+    throw toApiError(error);
   }
   if (response.ok) return response;
-  if (response.status !== 401 || !(await other_token(token))) throw await problem_of(response);
+  if (response.status !== 401 || !(await askForToken(token))) throw await problemOf(response);
   options.signal?.throwIfAborted();
   return request(path, options);
 }
 
-export async function get_text(path, options) {
+export async function getText(path, options) {
   return whole((await request(path, options)).text());
 }
 
-export async function get_json(path, options) {
-  return JSON.parse(await get_text(path, options));
+export async function getJson(path, options) {
+  return JSON.parse(await getText(path, options));
 }
 
-export function post_json(path, text) {
+export function postJson(path, text) {
   const headers = { "Content-Type": "application/json" };
-  return get_json(path, { method: "POST", headers, body: text });
+  return getJson(path, { method: "POST", headers, body: text });
 }
 
 // Resolves to a response body. Throws ApiError if the body breaks off.
 const whole = (body) =>
   body.catch((error) => {
-    throw broken(error);
+    throw toApiError(error);
   });
 
 // Posts a scene. Resolves to {id, width, height, camera, objects, lights}.
-export const post_scene = (text) => post_json("v1/scenes", text);
+export const postScene = (text) => postJson("v1/scenes", text);
 
 // Parses a Server-Timing header into {name: milliseconds}.
-export function server_timing(header) {
+export function serverTiming(header) {
   const timing = {};
   for (const entry of (header ?? "").split(",")) {
     const duration = /;\s*dur=([\d.]+)/.exec(entry);
@@ -94,18 +100,18 @@ export function server_timing(header) {
 }
 
 // Returns the service's warning about a picture that shows little, or "".
-export const warning_of = (response) => response.headers.get("Orrery-Warning") ?? "";
+export const warningOf = (response) => response.headers.get("Orrery-Warning") ?? "";
 
 // Fetches a picture as {png, stats}. A picture from the browser's cache has the figures of its first render.
-export async function get_frame(url, signal) {
+export async function getFrame(url, signal) {
   const response = await request(url, { signal });
-  const { render: render_ms, encode: encode_ms } = server_timing(response.headers.get("Server-Timing"));
-  const rays = Number(response.headers.get("X-Rays") ?? NaN);
-  const rmse = parseFloat(response.headers.get("X-RMSE") ?? "") || undefined;
-  const warning = warning_of(response);
+  const { render: renderMs, encode: encodeMs } = serverTiming(response.headers.get("Server-Timing"));
+  const rays = Number(response.headers.get("Orrery-Rays") ?? NaN);
+  const rmse = parseFloat(response.headers.get("Orrery-RMSE") ?? "") || undefined;
+  const warning = warningOf(response);
   const bound = response.headers.get("Orrery-Error-Bound");
   const budget = response.headers.get("Orrery-Budget");
   const location = response.headers.get("Content-Location") ?? undefined;
   const png = await whole(response.blob());
-  return { png, stats: { render_ms, encode_ms, rays, rmse, warning, bound, budget, location } };
+  return { png, stats: { renderMs, encodeMs, rays, rmse, warning, bound, budget, location } };
 }

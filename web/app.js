@@ -1,85 +1,255 @@
-// Page wiring: the URL hash is the state, the player shows it, the controls change it.
+// Page: the store has its state, the player chooses the picture, views show the state, and the address bar
+// names it.
 
-import { attach_accuracy } from "./accuracy.js";
-import { get_json, post_scene } from "./api.js";
-import { moving_pictures, picture_at_rest, picture_for, picture_to_chart } from "./asked.js";
-import { persist, wake_all } from "./backoff.js";
+import { attachAccuracy } from "./accuracy.js";
+import { AddressBar } from "./address-bar.js";
+import { getJson, postScene } from "./api.js";
+import { wakeAll, withRetries } from "./backoff.js";
 import { OrbitCamera } from "./camera.js";
-import { attach_controls, kZoomStep, step } from "./controls.js";
+import { attachControls, step, ZOOM_STEP } from "./controls.js";
 import { Editor } from "./editor.js";
 import { Gallery } from "./gallery.js";
-import { attach_hint } from "./hint.js";
+import { attachHint } from "./hint.js";
 import { Hud } from "./hud.js";
+import { DEFAULT_VIEW, parseHash } from "./link.js";
+import { attachMessages } from "./messages.js";
 import { Options } from "./options.js";
+import { movingPictures, pictureAtRest, pictureFor, pictureToChart } from "./picture-request.js";
 import { Player } from "./player.js";
-import { hide_problem, show_problem } from "./problem.js";
-import { show_progress } from "./progress.js";
-import { refused_of } from "./refusal.js";
-import { facts_of, SceneLibrary, thumbnail_of } from "./scenes.js";
-import { attach_curl, attach_download } from "./share.js";
-import { format_hash, kDefaults, parse_hash, view_of } from "./state.js";
-import { attach_tabs } from "./tabs.js";
-import { frame_url } from "./urls.js";
+import { rejectedSettings } from "./refusal.js";
+import { SceneOpener } from "./scene-opener.js";
+import { SceneLibrary, thumbnailOf } from "./scenes.js";
+import { attachCurl, attachDownload } from "./share.js";
+import { Store } from "./store.js";
+import { attachTabs } from "./tabs.js";
+import { attachToolbar } from "./toolbar.js";
+import { frameUrl } from "./urls.js";
 import { View } from "./view.js";
 
-const kSaveMs = 1000; // interval of hash updates; browsers throttle shorter ones
-
 const $ = (id) => document.getElementById(id);
-const still_please = matchMedia("(prefers-reduced-motion: reduce)");
+const stage = $("stage");
+const reducedMotion = matchMedia("(prefers-reduced-motion: reduce)");
 
-const state = parse_hash(location.hash);
+const store = new Store({
+  ...parseHash(location.hash).settings,
+  catalog: null, // samples and techniques of the service, null until they are loaded
+  limits: { side: 4096, pixels: 2 ** 24, samples: 4096, frames: 3600 },
+  scene: null, // scene on the stage, null while one is being opened
+  shows: "", // picture on the stage: "preview", "stream", "refining", "still" or, if another one is due, ""
+  figures: null, // {kind, ...} of the picture on the stage
+  warning: "",
+  failure: null, // {error, actions}
+  retry: null, // {title, seconds} while the page waits to repeat a request
+  progress: null, // progress of the current render, see progress.js
+  panning: false, // plain drags, arrow keys and arrow buttons pan
+});
 const library = new SceneLibrary();
 const camera = new OrbitCamera();
-const stage = $("stage");
-const view = new View(stage, $("canvas"), $("poster"));
-const hud = new Hud($("hud"));
-const limits = { side: 4096, pixels: 2 ** 24, samples: 4096, frames: 3600 };
-let scene = null; // scene on the stage, or null while one is being opened
-let gallery = null;
-let options = null;
-let opening = 0; // scene change counter, to drop late responses
-let save_timer = 0;
-let pans = false;
-const page = () => ({ state, scene, view, limits });
+const view = new View(stage, $("canvas"));
+const address = new AddressBar(store, camera);
+
+// State that a picture request needs.
+const page = (changes) => ({ ...store.get(), box: view.box, ...changes });
+
+const fail = (error, actions = []) => store.set({ retry: null, failure: { error, actions } });
+const showRetry = ({ title }, seconds) => store.set({ retry: { title, seconds } });
+const announce = (text) => ($("announcement").textContent = text);
+
+// ---- pictures -----------------------------------------------------------------------------------------
 
 const player = new Player(camera, view, {
-  moving: (purpose, at) => (scene ? moving_pictures(page(), purpose, at) : []),
-  at_rest: (at) => scene && { picture: picture_at_rest(page(), at), asked: state.samples > 0 || state.plan !== "" },
-  missing: () => post_again(),
-  stats: (kind, figures) => {
-    hud.show(kind, figures);
-    show_warning(figures.warning);
-    // A still of a held orbit is rendered without a budget.
-    if (kind === "still" && figures.bound && !state.playing) accuracy.tell(figures, state);
-    stage.dataset.shows = kind === "still" ? "refining" : kind;
-    $("notice").hidden = true;
-    hide_fail();
-    if (kind === "stream") save_soon();
+  movingPictures: (purpose, at) => (store.get().scene ? movingPictures(page(), purpose, at) : []),
+  pictureAtRest: (at) => {
+    const { scene, samples, plan } = store.get();
+    return scene && { picture: pictureAtRest(page(), at), isRequested: samples > 0 || plan !== "" };
   },
-  waiting: show_waiting,
-  problem: fail_to_render,
-  progress: (figures) => show_progress($("busy"), $("progress"), figures),
-  stale: () => {
-    delete stage.dataset.shows;
-    accuracy.stale();
+  repost: async () => {
+    await opener.repost();
+    player.refresh();
   },
-  settled: () => save_now(),
-  rested: () => {
-    stage.dataset.shows = "still";
-    refresh_download();
-    if (!state.playing) accuracy.rest();
+  drawn: (kind, figures) => {
+    const warning = figures.warning ?? store.get().warning;
+    const shows = kind === "still" ? "refining" : kind;
+    store.set({ shows, figures: { kind, ...figures }, warning, retry: null, failure: null });
+    if (kind === "stream") address.saveSoon();
   },
+  retrying: showRetry,
+  failed: showRenderError,
+  progress: (progress) => store.set({ progress }),
+  stopped: () => store.set({ shows: "" }),
+  settled: () => address.save(),
+  finished: () => store.set({ shows: "still" }),
 });
 
-const accuracy = attach_accuracy({
-  picture: () => scene && picture_to_chart(page(), camera.view),
-  within: (budget) => picture_at_rest({ ...page(), state: { ...state, plan: "", ...budget } }, camera.view),
+const accuracy = attachAccuracy(store, {
+  picture: () => store.get().scene && pictureToChart(page(), camera.view),
+  withBudget: (budget) => pictureAtRest(page({ plan: "", ...budget }), camera.view),
   // The error view needs a resolved budget; falls back to the picture without a budget.
-  seen: () => scene && frame_url({ ...player.picture, seconds: 0, error: 0 }),
-  pause: () => state.playing && set_playing(false),
-  set: (settings) => change(settings),
+  shownAddress: () => store.get().scene && frameUrl({ ...player.picture, seconds: 0, error: 0 }),
+  pause: () => store.get().playing && setPlaying(false),
+  set: change,
+  announce,
 });
 
+function currentPicture() {
+  const { scene } = store.get();
+  return scene && { picture: player.picture, name: library.sample(scene.ref)?.name ?? "scene" };
+}
+
+// Reports `error`. If the service rejected settings of the link, every offered action resets them.
+function showRenderError(error) {
+  const rejected = rejectedSettings(error, store.get());
+  if (!rejected) return fail(error);
+  const reset = () => {
+    store.set({ ...rejected.settings, failure: null });
+    address.save();
+  };
+  fail(error, [[rejected.label, reset], ...otherScenes.map(([label, act]) => [label, () => (reset(), act())])]);
+}
+
+// ---- scenes -------------------------------------------------------------------------------------------
+
+const opener = new SceneOpener(store, library, camera, {
+  opening: ({ ref }) => {
+    const sample = library.sample(ref);
+    view.announce(sample ? thumbnailOf(sample) : "");
+  },
+  opened: () => address.save(),
+  retrying: showRetry,
+  failed: (error) => {
+    view.announce("");
+    fail(error.status === 404 ? unknownScene(error) : error, otherScenes);
+  },
+});
+
+// Actions offered if a scene cannot be shown, each [label, function].
+const otherScenes = [
+  ["Choose a sample scene", () => (selectTab("tab-scenes"), gallery.focus())],
+  ["Paste a scene", () => (selectTab("tab-json"), $("text").focus())],
+];
+
+function unknownScene({ requestId }) {
+  const { ref } = store.get();
+  const name = ref.length > 40 ? `${ref.slice(0, 12)}…` : ref;
+  const detail = "The service has no such scene. It keeps posted scenes only for a limited time.";
+  return { title: `Unknown scene “${name}”`, detail, requestId };
+}
+
+function pickSample(name) {
+  address.save();
+  store.set({ ref: name });
+  address.push(DEFAULT_VIEW);
+  opener.open(DEFAULT_VIEW);
+  showStage();
+}
+
+async function applyText(text) {
+  const posted = await opener.post(text);
+  if (!posted) return;
+  address.save();
+  opener.show(posted, DEFAULT_VIEW);
+  address.push();
+  showStage();
+}
+
+// Scrolls the stage into view: a narrow page may have scrolled it away.
+function showStage() {
+  stage.scrollIntoView({ block: "nearest" });
+}
+
+// ---- settings -----------------------------------------------------------------------------------------
+
+// Applies settings that the user has chosen.
+function change(settings) {
+  if (!store.get().scene) return store.set(settings);
+  address.save();
+  store.set({ ...settings, failure: null });
+  address.push();
+}
+
+function setPlaying(playing) {
+  store.set({ playing });
+  address.save();
+}
+
+// Applies the hash after the user went back, forward, or edited the address.
+function loadHash() {
+  const { settings, view: linked } = parseHash(location.hash);
+  const { catalog, scene, playing } = store.get();
+  if (reducedMotion.matches && !playing) settings.playing = false;
+  if (!catalog) return store.set(settings); // start() opens the scene
+  if (settings.ref !== scene?.ref) {
+    store.set({ ...settings, scene: null });
+    return opener.open(linked);
+  }
+  camera.jump(linked);
+  player.invalidate();
+  store.set(settings);
+  accuracy.hideOverlay();
+  player.refresh();
+}
+
+// ---- moves of the view --------------------------------------------------------------------------------
+
+const moves = {
+  rotate: (azimuth, elevation) => (camera.rotate(azimuth, elevation), moved()),
+  dolly,
+  pan,
+  isPanning: () => store.get().panning,
+  reset: () => (camera.reset(), moved()),
+  togglePlay: () => setPlaying(!store.get().playing),
+  hold: (held) => player.hold(held),
+};
+
+function moved() {
+  $("hint").hidden = true;
+  accuracy.hideOverlay();
+  player.input();
+}
+
+function dolly(factor) {
+  const applied = camera.dolly(factor);
+  moved();
+  return applied;
+}
+
+// Pans by pixels on the stage. Points at the target's distance stay under the pointer.
+function pan(right, up) {
+  if (!store.get().scene) return;
+  const { width, height, fov } = pictureFor(page(), "still", camera.view);
+  const shownHeight = Math.min(view.box.height, (view.box.width * height) / width);
+  camera.pan(right / shownHeight, up / shownHeight, fov);
+  moved();
+}
+
+const by = (x, y) => (event) => step(stage, moves, x, y, { pans: moves.isPanning(), fine: event.shiftKey });
+const actions = {
+  left: by(-1, 0),
+  right: by(1, 0),
+  up: by(0, 1),
+  down: by(0, -1),
+  pan: () => store.set({ panning: !moves.isPanning() }),
+  closer: () => moves.dolly(ZOOM_STEP),
+  farther: () => moves.dolly(1 / ZOOM_STEP),
+  reset: () => moves.reset(),
+  play: () => moves.togglePlay(),
+  retry: () => (wakeAll(), player.retryNow()),
+};
+
+// ---- views --------------------------------------------------------------------------------------------
+
+new Hud($("hud"), store);
+attachMessages(store);
+attachToolbar(store, actions, (speed) => {
+  store.set({ speed });
+  player.refreshSoon();
+  address.saveSoon();
+});
+new Options({ technique: $("technique"), samples: $("samples"), size: $("size") }, store, (key, value) =>
+  change({ ...(key !== "size" && { plan: "" }), [key]: value }),
+);
+const gallery = new Gallery($("gallery"), store, pickSample);
+const selectTab = attachTabs($("tabs"));
 const editor = new Editor(
   {
     text: $("text"),
@@ -89,304 +259,56 @@ const editor = new Editor(
     apply: $("apply"),
     restore: $("restore"),
   },
-  async (text) => {
-    const turn = opening;
-    const posted = await library.post(text);
-    if (turn !== opening) return; // another scene was opened meanwhile
-    save_now();
-    show_scene(posted, kDefaults);
-    history.pushState(null, "", current_hash());
-    show_stage();
-  },
-  post_scene,
+  applyText,
+  postScene,
 );
+attachControls(stage, moves);
+attachHint($("hint"));
+attachCurl($("curl"), currentPicture, announce);
+const refreshDownload = attachDownload($("download"), currentPicture, fail);
 
-function current_picture() {
-  if (!scene) return null;
-  return { picture: player.picture, name: library.sample(scene.ref)?.name ?? "scene" };
-}
-
-// Opens the scene in `state`, retrying until the service responds.
-async function open_scene(at) {
-  const turn = ++opening;
-  const wanted = () => turn === opening;
-  scene = null;
-  accuracy.show();
-  player.invalidate();
-  announce();
-  try {
-    const opened = await persist(() => library.open(state.scene), show_waiting, wanted);
-    if (!wanted()) return;
-    show_scene(opened, at);
-    save_now();
-  } catch (error) {
-    if (!wanted()) return;
-    show_nothing();
-    fail(error.status === 404 ? unknown_scene(error) : error, others);
-  }
-}
-
-// Clears stage, figures and messages, and shows the thumbnail of the scene being opened.
-function announce() {
-  const sample = library.sample(state.scene);
-  view.announce(sample ? thumbnail_of(sample) : "");
-  stage.dataset.scene = state.scene;
-  hud.clear();
-  hide_fail();
-  show_warning("");
-}
-
-function show_nothing() {
-  view.announce("");
-  document.title = "orrery";
-  stage.setAttribute("aria-label", "Orbit view");
-}
-
-function unknown_scene({ request_id }) {
-  const name = state.scene.length > 40 ? `${state.scene.slice(0, 12)}…` : state.scene;
-  const detail = "The service never had it, or has forgotten it: it keeps posted scenes for a time only.";
-  return { title: `There is no scene “${name}”`, detail, request_id };
-}
-
-function show_scene(opened, at) {
-  opening += 1;
-  scene = { ...opened, ...facts_of(opened) };
-  state.scene = stage.dataset.scene = opened.ref;
-  camera.use_scene_camera(opened.camera, scene.floor);
-  camera.jump(view_of(at));
-  hide_fail();
-  editor.load(opened.text);
-  gallery?.mark(opened.ref);
-  options?.show(state, opened);
-  document.title = `${opened.title} · orrery`;
-  stage.setAttribute("aria-label", `${opened.title}, orbit view`);
-  accuracy.show();
-  accuracy.leave();
-  refresh_download();
-  player.invalidate();
-  player.refresh();
-}
-
-async function post_again() {
-  const turn = opening;
-  const { id } = await library.post(scene.text);
-  if (turn !== opening) return;
-  scene = { ...scene, id };
-  player.refresh();
-}
-
-function pick_sample(name) {
-  save_now();
-  state.scene = name;
-  history.pushState(null, "", format_hash({ ...state, az: 0, el: 0, dist: 1, pan: kDefaults.pan, t: 0 }));
-  gallery.mark(name);
-  open_scene(kDefaults);
-  show_stage();
-}
-
-// Scrolls the stage into view: a narrow page may have scrolled it away.
-function show_stage() {
-  stage.scrollIntoView({ block: "nearest" });
-}
-
-function current_hash() {
-  const { azimuth, elevation, distance, pan, time } = camera.view;
-  return format_hash({ ...state, az: azimuth, el: elevation, dist: distance, pan, t: time });
-}
-
-function save_now() {
-  clearTimeout(save_timer);
-  save_timer = 0;
-  if (scene) history.replaceState(null, "", current_hash());
-}
-
-function save_soon() {
-  save_timer ||= setTimeout(save_now, kSaveMs);
-}
-
-// Applies the hash after the user went back, forward, or edited the address.
-function load_hash() {
-  const next = parse_hash(location.hash);
-  const same_scene = scene && next.scene === scene.ref;
-  Object.assign(state, next, { playing: next.playing && (!still_please.matches || state.playing) });
-  show_settings();
-  if (!same_scene) return open_scene(state);
-  camera.jump(view_of(state));
-  accuracy.leave();
-  accuracy.show();
-  player.invalidate();
-  player.playing = state.playing;
-}
-
-function show_settings() {
-  player.speed = state.speed;
-  $("play").setAttribute("aria-label", state.playing ? "Pause" : "Play");
-  $("play").classList.toggle("playing", state.playing);
-  $("speed").value = state.speed;
-  $("speed-text").textContent = `${state.speed}°/s`;
-  options?.show(state, scene);
-  accuracy.mark(state);
-}
-
-function set_playing(playing) {
-  state.playing = playing;
-  show_settings();
-  if (playing) accuracy.leave();
-  player.playing = playing;
-  save_now();
-}
-
-const set_option = (key, value) => change({ ...(key !== "size" && { plan: "" }), [key]: value });
-
-// Applies settings that the user has chosen.
-function change(settings) {
-  save_now();
-  Object.assign(state, settings);
-  show_settings();
-  if (!scene) return;
-  history.pushState(null, "", current_hash());
-  hide_fail();
-  accuracy.leave();
-  accuracy.show();
-  player.refresh();
-}
-
-const hide_fail = () => hide_problem($("stage-problem"));
-
-function fail(error, actions = []) {
-  $("notice").hidden = true;
-  show_problem($("stage-problem"), error, undefined, actions);
-}
-
-// Actions offered if no scene can be shown, each [label, function].
-const others = [
-  ["Choose a sample", () => (select_tab("tab-scenes"), gallery?.focus())],
-  ["Paste a scene", () => (select_tab("tab-json"), $("text").focus())],
-];
-
-// Reports `error`. If the service rejected settings of the link, every offered action resets them.
-function fail_to_render(error) {
-  const refused = refused_of(error, state);
-  if (!refused) return fail(error);
-  const drop = () => {
-    Object.assign(state, refused.settings);
-    show_settings();
-  };
-  const again = [refused.label, () => (drop(), hide_fail(), save_now(), player.refresh())];
-  fail(error, [again, ...others.map(([label, act]) => [label, () => (drop(), act())])]);
-}
-
-function show_warning(text) {
-  if (text === undefined || $("warning").title === text) return;
-  $("warning").title = text;
-  $("warning").textContent = text && `Warning: ${text}`;
-}
-
-function show_waiting(error, seconds) {
-  hud.pause();
-  $("notice-text").textContent = `${error.title}. Trying again in ${Math.max(1, Math.round(seconds))} s.`;
-  $("notice").hidden = false;
-}
-
-function moved() {
-  $("hint").hidden = true;
-  accuracy.leave();
-  player.input();
-}
-
-const moves = {
-  rotate: (azimuth, elevation) => (camera.rotate(azimuth, elevation), moved()),
-  dolly,
-  pan,
-  panning: () => pans,
-  reset: () => (camera.reset(), moved()),
-  toggle_play: () => set_playing(!state.playing),
-  hold: (held) => player.hold(held),
-};
-
-function dolly(factor) {
-  const changed = camera.dolly(factor);
-  moved();
-  return changed;
-}
-
-// Pans by pixels on the stage. Points at the target's distance stay under the pointer.
-function pan(right, up) {
-  if (!scene) return;
-  const { width, height, fov } = picture_for(page(), "still", camera.view);
-  const shown_height = Math.min(view.box.height, (view.box.width * height) / width);
-  camera.pan(right / shown_height, up / shown_height, fov);
-  moved();
-}
-
-// Makes plain drags, arrow keys and arrow buttons pan (`on`) or rotate.
-function set_panning(on) {
-  pans = on;
-  $("pan").setAttribute("aria-pressed", String(on));
-  for (const name of ["left", "right", "up", "down"]) {
-    const button = document.querySelector(`[data-do="${name}"]`);
-    button.title = `${on ? "Move" : "Turn"} ${name} (arrow key; with shift finely)`;
-  }
-}
-
-const by = (x, y) => (event) => step(stage, moves, x, y, { pans, fine: event.shiftKey });
-const actions = {
-  left: by(-1, 0),
-  right: by(1, 0),
-  up: by(0, 1),
-  down: by(0, -1),
-  pan: () => set_panning(!pans),
-  closer: () => moves.dolly(kZoomStep),
-  farther: () => moves.dolly(1 / kZoomStep),
-  reset: () => moves.reset(),
-  play: () => moves.toggle_play(),
-  retry: () => (wake_all(), player.retry_now()),
-};
-
-attach_controls(stage, moves);
-attach_hint($("hint"));
-const select_tab = attach_tabs($("tabs"));
-for (const button of document.querySelectorAll("[data-do]")) {
-  button.addEventListener("click", actions[button.dataset.do]);
-}
-$("speed").addEventListener("input", () => {
-  state.speed = Number($("speed").value);
-  show_settings();
-  player.refresh_soon();
-  save_soon();
+store.subscribe(["ref"], ({ ref }) => (stage.dataset.scene = ref));
+store.subscribe(["shows"], ({ shows }) => {
+  if (shows) stage.dataset.shows = shows;
+  else delete stage.dataset.shows;
 });
-new ResizeObserver(() => player.refresh_soon()).observe(stage);
-const refresh_download = attach_download($("download"), current_picture, fail);
-attach_curl($("curl"), current_picture, $("announcement"));
-addEventListener("hashchange", load_hash);
-still_please.addEventListener("change", () => (camera.damped = !still_please.matches));
+store.subscribe(["scene"], ({ scene }) => {
+  document.title = scene ? `${scene.title} · orrery` : "orrery";
+  stage.setAttribute("aria-label", scene ? `${scene.title}, 3D view` : "3D view");
+  if (scene) editor.load(scene.text);
+});
+store.subscribe(["scene", "shows"], refreshDownload);
 
-async function load_catalog() {
-  const [catalog, published] = await Promise.all([get_json("v1/catalog"), get_json("v1/limits")]);
+store.subscribe(["playing"], ({ playing }) => (player.playing = playing));
+store.subscribe(["speed"], ({ speed }) => (player.speed = speed));
+store.subscribe(["limits"], ({ limits }) => (player.streamFrames = limits.frames));
+store.subscribe(["technique", "samples", "size", "plan", "seconds", "error"], () => player.refresh());
+store.subscribe(["scene"], () => {
+  player.invalidate();
+  player.refresh();
+});
+
+new ResizeObserver(() => player.refreshSoon()).observe(stage);
+addEventListener("hashchange", loadHash);
+reducedMotion.addEventListener("change", () => (camera.damped = !reducedMotion.matches));
+
+// ---- start --------------------------------------------------------------------------------------------
+
+async function loadCatalog() {
+  const [catalog, published] = await Promise.all([getJson("v1/catalog"), getJson("v1/limits")]);
   const { image_side: side, image_pixels: pixels, samples, orbit_frames: frames } = published;
-  Object.assign(limits, { side, pixels, samples, frames });
-  return catalog;
+  return { catalog, limits: { side, pixels, samples, frames } };
 }
 
 async function start() {
-  camera.damped = !still_please.matches;
-  set_panning(false);
-  if (still_please.matches) state.playing = false;
-  show_settings();
-  player.playing = state.playing;
-  const catalog = await persist(load_catalog, show_waiting);
-  player.stream_frames = limits.frames;
+  camera.damped = !reducedMotion.matches;
+  if (reducedMotion.matches) store.set({ playing: false });
+  const { catalog, limits } = await withRetries(loadCatalog, showRetry);
   library.samples = catalog.samples ?? [];
-  if (!location.hash && !library.sample(state.scene)) state.scene = library.samples[0]?.name ?? state.scene;
-  options = new Options(
-    { technique: $("technique"), samples: $("samples"), size: $("size") },
-    catalog,
-    limits,
-    set_option,
-  );
-  options.show(state, null);
-  gallery = new Gallery($("gallery"), library, pick_sample);
-  await open_scene(state);
+  store.set({ catalog, limits });
+  const { ref } = store.get();
+  if (!location.hash && !library.sample(ref)) store.set({ ref: library.samples[0]?.name ?? ref });
+  await opener.open(parseHash(location.hash).view);
 }
 
 start().catch(fail);

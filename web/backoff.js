@@ -1,36 +1,36 @@
 // Delays between retries: doubling from 0.5 s to 16 s, or given by Retry-After.
 
-const kFirst = 0.5;
-const kLongest = 16;
+const FIRST = 0.5;
+const LONGEST_SECONDS = 16;
 const sleepers = new Set(); // resolve functions of the waiting retries
 
 export class Backoff {
-  #next = kFirst;
+  #next = FIRST;
 
   // Returns the seconds to wait after `error`. Jitter of up to 10 % keeps pages from retrying at the same
   // time.
   after(error) {
-    const seconds = error?.retry_after_seconds ?? this.#next;
-    this.#next = Math.min(kLongest, this.#next * 2);
+    const seconds = error?.retryAfterSeconds ?? this.#next;
+    this.#next = Math.min(LONGEST_SECONDS, this.#next * 2);
     return seconds * (1 + 0.1 * Math.random());
   }
 
   reset() {
-    this.#next = kFirst;
+    this.#next = FIRST;
   }
 }
 
 // Runs `task` until it succeeds. Throws its error if the error is not retryable.
 // Returns undefined if the task is no longer `wanted()` after a wait.
-// Calls `on_waiting(error, seconds)` before each wait. wake_all() ends every wait.
-export async function persist(task, on_waiting, wanted = () => true) {
+// Calls `onWaiting(error, seconds)` before each wait. wakeAll() ends every wait.
+export async function withRetries(task, onWaiting, wanted = () => true) {
   for (const backoff = new Backoff(); wanted();) {
     try {
       return await task();
     } catch (error) {
       if (!error.retryable || !wanted()) throw error;
       const seconds = backoff.after(error);
-      on_waiting(error, seconds);
+      onWaiting(error, seconds);
       await sleep(seconds);
     }
   }
@@ -48,6 +48,6 @@ async function sleep(seconds) {
   sleepers.delete(wake);
 }
 
-export function wake_all() {
+export function wakeAll() {
   for (const wake of sleepers) wake();
 }

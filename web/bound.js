@@ -1,9 +1,9 @@
 // Text for the error bound of a picture, from the parameters of a header or from JSON.
 
-import { rounded_up } from "./progress.js";
+import { roundedUp } from "./progress.js";
 
 // Parses "rms=0.0044;kind=estimated;met=?1;reason=\"a; b\"" into {name: text}. ?1 and ?0 become booleans.
-export function parameters_of(header) {
+export function parametersOf(header) {
   const fields = {};
   for (const [, name, quoted, plain] of (header ?? "").matchAll(/([\w-]+)=(?:"([^"]*)"|([^;]*))/g)) {
     const text = quoted ?? plain;
@@ -13,7 +13,7 @@ export function parameters_of(header) {
 }
 
 // Returns the same fields from a certificate in JSON.
-export function fields_of({ total, known, terms, space }) {
+export function fieldsOf({ total, known, terms, space }) {
   const number = (value) => (value === null ? "unknown" : String(value));
   const because = terms.filter(({ bound }) => bound.kind === "unknown").map(({ subject }) => subject);
   return {
@@ -26,27 +26,28 @@ export function fields_of({ total, known, terms, space }) {
   };
 }
 
-const strength = (kind) => (kind === "estimated" ? "95 %, estimated" : kind);
-const at_most = (rms, kind, space) => `≤ ${rounded_up(Number(rms))} (${strength(kind)})${unit(space)}`;
+const strength = (kind) => (kind === "estimated" ? "95 % confidence" : kind);
+const upperBoundText = (rms, kind, space) => `≤ ${roundedUp(Number(rms))} (${strength(kind)})${unit(space)}`;
 
 // Suffix for the unit of an error: empty for linear radiance, else display values from 0 to 1.
-export const unit = (space) => (space === "display" ? ", on a display" : "");
+export const unit = (space) => (space === "display" ? " in display values" : "");
 
-// Returns a text such as "error ≤ 0.0044 (95 %, estimated)". For an unknown error, names the cause and the
+// Returns a text such as "error ≤ 0.0044 (95 % confidence)". For an unknown error, names the cause and the
 // bound of the remaining terms.
-export function bound_words(fields) {
+export function boundText(fields) {
   const { rms, kind, because, known, space } = fields;
-  if (!kind) return "error unknown: the service does not tell it";
-  if (kind !== "unknown") return `error ${at_most(rms, kind, space)}`;
-  const rest = known === "unknown" ? "nothing of it is known" : `the rest ${at_most(known, fields["known-kind"], space)}`;
-  return `error unknown, because of ${because}; ${rest}`;
+  if (!kind) return "error unknown: not reported by the service";
+  if (kind !== "unknown") return `error ${upperBoundText(rms, kind, space)}`;
+  const unknown = `error unknown because of ${because}`;
+  if (known === "unknown") return unknown;
+  return `${unknown}; other errors ${upperBoundText(known, fields["known-kind"], space)}`;
 }
 
 // Returns {missed, text} for the outcome of a budget.
-export function budget_words(budget, bound) {
-  const took = budget.used ? `${rounded_up(Number(budget.used))} s of ${budget.seconds} s` : "";
+export function budgetText(budget, bound) {
+  const took = budget.used ? `${roundedUp(Number(budget.used))} s of ${budget.seconds} s` : "";
   const aim = budget.error ? `error limit: ${budget.error}` : "";
-  const words = [took, aim, bound_words(bound)].filter(Boolean).join("; ");
-  if (budget.met) return { missed: false, text: `Limit kept: ${words}` };
-  return { missed: true, text: `Limit missed: ${budget.reason || "the service does not say why"}; ${words}` };
+  const text = [took, aim, boundText(bound)].filter(Boolean).join("; ");
+  if (budget.met) return { missed: false, text: `Limit met: ${text}` };
+  return { missed: true, text: `Limit missed: ${budget.reason || "no reason given"}; ${text}` };
 }

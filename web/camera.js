@@ -2,14 +2,14 @@
 // relative to the scene's own view. `distance` is a factor of the scene's own distance. `pan` moves eye and
 // target along the scene's axes, in metres. `time` is the time of the scene's motion in seconds.
 
-const kElevationLimit = 89.9; // degrees; at 90 the view direction would be parallel to up
-const kDamping = 0.05; // fraction of the way to the goal per 1/60 s
-const kLeastPixels = 1; // pixels added per 1/60 s, so that the glide ends
-const kNearest = 0.02;
-const kFarthest = 50;
-const kFloorClearance = 0.01; // fraction of the scene's own distance
+const ELEVATION_LIMIT = 89.9; // degrees; at 90 the view direction would be parallel to up
+const DAMPING = 0.05; // fraction of the way to the goal per 1/60 s
+const MIN_PIXELS = 1; // pixels added per 1/60 s, so that the glide ends
+const MIN_DISTANCE = 0.02;
+const MAX_DISTANCE = 50;
+const FLOOR_CLEARANCE = 0.01; // fraction of the scene's own distance
 
-const own_view = () => ({ azimuth: 0, elevation: 0, distance: 1, pan: [0, 0, 0], time: 0 });
+const defaultView = () => ({ azimuth: 0, elevation: 0, distance: 1, pan: [0, 0, 0], time: 0 });
 const clamp = (value, low, high) => Math.min(high, Math.max(low, value));
 const turn = (degrees) => ((degrees % 360) + 360) % 360;
 const radians = (degrees) => (degrees * Math.PI) / 180;
@@ -24,33 +24,33 @@ const cross = ([a, b, c], [x, y, z]) => [b * z - c * y, c * x - a * z, a * y - b
 // `out`, `side`: unit vectors in this plane, towards the eye and to its right
 // `metres`: distance from eye to target
 // `level`: height of the target along `pole`
-function frame_of({ eye = [0, 0, 4], look_at = [0, 0, 0], up = [0, 1, 0] } = {}) {
-  const offset = mix(eye, 1, look_at, -1);
+function frameOf({ eye = [0, 0, 4], look_at: lookAt = [0, 0, 0], up = [0, 1, 0] } = {}) {
+  const offset = mix(eye, 1, lookAt, -1);
   const pole = unit(up);
   const direction = unit(offset);
   const sine = clamp(dot(direction, pole), -1, 1);
   const out = unit(mix(direction, 1, pole, -sine));
   const elevation = degrees(Math.asin(sine));
-  const level = dot(look_at, pole);
+  const level = dot(lookAt, pole);
   return { pole, elevation, out, side: cross(pole, out), metres: Math.hypot(...offset), level };
 }
 
 // Returns the degrees of the scene's own eye above the plane with the normal `up`.
-export const elevation_of = (camera) => frame_of(camera).elevation;
+export const elevationOf = (camera) => frameOf(camera).elevation;
 
 export class OrbitCamera {
   damped = true; // false: every move is a jump (reduced motion)
-  #now = own_view();
-  #goal = own_view();
+  #now = defaultView();
+  #goal = defaultView();
   #scene = undefined;
-  #own = frame_of();
+  #own = frameOf();
   #floor = -Infinity;
 
   // Sets the scene's own camera and its floor, a height along up below the scene's own eye. Both limit the
   // elevation of the view.
-  use_scene_camera(camera, floor = -Infinity) {
+  useSceneCamera(camera, floor = -Infinity) {
     this.#scene = camera;
-    this.#own = frame_of(camera);
+    this.#own = frameOf(camera);
     this.#floor = floor;
   }
 
@@ -65,14 +65,14 @@ export class OrbitCamera {
   rotate(azimuth, elevation) {
     this.#goal.azimuth += azimuth;
     this.#goal.elevation += elevation;
-    this.#keep_allowed();
+    this.#keepAllowed();
   }
 
   // Multiplies the distance by `factor`. Returns the applied factor, which differs at the distance limits.
   dolly(factor) {
     const { distance } = this.#goal;
     this.#goal.distance *= factor;
-    this.#keep_allowed();
+    this.#keepAllowed();
     return this.#goal.distance / distance;
   }
 
@@ -83,23 +83,23 @@ export class OrbitCamera {
     const { pole, out, side } = this.#own;
     const turned = radians(azimuth);
     const lifted = radians(this.#own.elevation + elevation);
-    const camera_right = mix(side, Math.cos(turned), out, -Math.sin(turned));
-    const camera_up = mix(pole, Math.cos(lifted), cross(camera_right, pole), -Math.sin(lifted));
-    const height = this.#shown_metres(distance, fov);
-    const move = mix(camera_right, right * height, camera_up, up * height);
+    const cameraRight = mix(side, Math.cos(turned), out, -Math.sin(turned));
+    const cameraUp = mix(pole, Math.cos(lifted), cross(cameraRight, pole), -Math.sin(lifted));
+    const height = this.#shownMetres(distance, fov);
+    const move = mix(cameraRight, right * height, cameraUp, up * height);
     this.#goal.pan = mix(this.#goal.pan, 1, move, 1);
-    this.#keep_allowed();
+    this.#keepAllowed();
   }
 
   // Glides back to the scene's own view by the shorter way.
   reset() {
     const { azimuth, time } = this.#now;
-    this.#goal = { ...own_view(), azimuth: 360 * Math.round(azimuth / 360), time };
+    this.#goal = { ...defaultView(), azimuth: 360 * Math.round(azimuth / 360), time };
   }
 
   jump({ azimuth, elevation, distance, pan = [0, 0, 0], time = 0 }) {
     this.#goal = { azimuth: turn(azimuth), elevation, distance, pan, time };
-    this.#keep_allowed();
+    this.#keepAllowed();
     this.#now = { ...this.#goal };
   }
 
@@ -113,9 +113,9 @@ export class OrbitCamera {
   step(seconds, pixels) {
     const now = this.#now;
     const goal = this.#goal;
-    const left = pixels * this.#heights_left();
-    const least = left > 0 ? (kLeastPixels * 60 * seconds) / left : 1;
-    const part = this.damped ? Math.min(1, 1 - (1 - kDamping) ** (60 * seconds) + least) : 1;
+    const left = pixels * this.#heightsLeft();
+    const least = left > 0 ? (MIN_PIXELS * 60 * seconds) / left : 1;
+    const part = this.damped ? Math.min(1, 1 - (1 - DAMPING) ** (60 * seconds) + least) : 1;
     if (part === 1) {
       this.#now = { ...goal };
       return false;
@@ -129,32 +129,32 @@ export class OrbitCamera {
 
   // Returns the remaining motion, in picture heights, of points at the picture's edge and the target's
   // distance.
-  #heights_left() {
+  #heightsLeft() {
     const now = this.#now;
     const goal = this.#goal;
     const turned = Math.hypot(radians(goal.azimuth - now.azimuth), radians(goal.elevation - now.elevation)) / 2;
     const zoomed = Math.abs(Math.log(goal.distance / now.distance)) / 2;
-    return Math.max(turned, zoomed, Math.hypot(...mix(goal.pan, 1, now.pan, -1)) / this.#shown_metres(now.distance));
+    return Math.max(turned, zoomed, Math.hypot(...mix(goal.pan, 1, now.pan, -1)) / this.#shownMetres(now.distance));
   }
 
   // Returns the metres that the picture's height covers at `distance`, a factor of the scene's own distance.
   // `fov` as in pan().
-  #shown_metres(distance, fov = this.#scene?.fov_degrees ?? 45) {
+  #shownMetres(distance, fov = this.#scene?.fov_degrees ?? 45) {
     if (this.#scene?.type === "orthographic") return distance * (this.#scene.height ?? 2);
     return distance * 2 * this.#own.metres * Math.tan(radians(fov / 2));
   }
 
   // Clamps the goal: distance within its limits, elevation off the pole and above the floor.
-  #keep_allowed() {
+  #keepAllowed() {
     const { elevation: own, metres, pole, level } = this.#own;
     const goal = this.#goal;
-    goal.distance = clamp(goal.distance, kNearest, kFarthest);
-    const highest = Math.max(0, kElevationLimit - own);
-    let lowest = Math.min(0, -kElevationLimit - own);
+    goal.distance = clamp(goal.distance, MIN_DISTANCE, MAX_DISTANCE);
+    const highest = Math.max(0, ELEVATION_LIMIT - own);
+    let lowest = Math.min(0, -ELEVATION_LIMIT - own);
     if (this.#floor > -Infinity) {
-      const own_height = level + metres * Math.sin(radians(own));
-      const least_height = Math.min(this.#floor + kFloorClearance * metres, own_height);
-      const sine = (least_height - level - dot(goal.pan, pole)) / (metres * goal.distance);
+      const ownHeight = level + metres * Math.sin(radians(own));
+      const minHeight = Math.min(this.#floor + FLOOR_CLEARANCE * metres, ownHeight);
+      const sine = (minHeight - level - dot(goal.pan, pole)) / (metres * goal.distance);
       lowest = clamp(degrees(Math.asin(clamp(sine, -1, 1))) - own, lowest, highest);
     }
     goal.elevation = clamp(goal.elevation, lowest, highest);

@@ -3,33 +3,33 @@
 //   rotate(azimuth, elevation) in degrees
 //   dolly(factor) -> the applied factor
 //   pan(right, up) in pixels of the camera's own motion
-//   panning() -> whether plain drags and arrows pan
-//   reset(), toggle_play(), hold(bool)
+//   isPanning() -> whether plain drags and arrows pan
+//   reset(), togglePlay(), hold(bool)
 
-const kDollyStep = 0.95; // distance factor of a wheel notch
-export const kZoomStep = kDollyStep ** 3; // distance factor of a key or a button
-export const kTurnStep = 180 / 8; // degrees for an arrow key or a button
-export const kPanStep = 1 / 8; // fraction of the stage's height for the same
-const kFine = 1 / 22.5; // fraction of a step with shift: one degree
-const kDragThreshold = 3; // pixels; less is a click
-const kWheelNotch = 100; // pixels of wheel movement that count as one step
-const kPinchGain = 8; // a trackpad pinch arrives as small wheel movements with ctrlKey
+const DOLLY_STEP = 0.95; // distance factor of a wheel notch
+export const ZOOM_STEP = DOLLY_STEP ** 3; // distance factor of a key or a button
+export const TURN_STEP = 180 / 8; // degrees for an arrow key or a button
+export const PAN_STEP = 1 / 8; // fraction of the stage's height for the same
+const FINE_FACTOR = 1 / 22.5; // fraction of a step with shift: one degree
+const DRAG_THRESHOLD = 3; // pixels; less is a click
+const WHEEL_NOTCH = 100; // pixels of wheel movement that count as one step
+const PINCH_GAIN = 8; // a trackpad pinch arrives as small wheel movements with ctrlKey
 
-export function attach_controls(stage, on) {
-  attach_pointers(stage, on);
-  attach_wheel(stage, on);
-  attach_keys(stage, on);
+export function attachControls(stage, on) {
+  attachPointers(stage, on);
+  attachWheel(stage, on);
+  attachKeys(stage, on);
   stage.addEventListener("dblclick", () => on.reset());
 }
 
 // Moves the view by one step of an arrow key or button. `right` and `up` are -1, 0 or 1.
 export function step(stage, on, right, up, { pans, fine }) {
-  const size = (pans ? kPanStep * stage.clientHeight : kTurnStep) * (fine ? kFine : 1);
+  const size = (pans ? PAN_STEP * stage.clientHeight : TURN_STEP) * (fine ? FINE_FACTOR : 1);
   if (pans) on.pan(right * size, up * size);
   else on.rotate(right * size, up * size);
 }
 
-function attach_pointers(stage, on) {
+function attachPointers(stage, on) {
   const pointers = new Map(); // id -> {x, y}
   let dragging = false;
   let pans = false;
@@ -47,7 +47,7 @@ function attach_pointers(stage, on) {
   stage.addEventListener("pointerdown", (event) => {
     if (event.pointerType === "mouse" && event.button !== 0 && event.button !== 2) return;
     stage.setPointerCapture(event.pointerId);
-    pans = (event.button === 2 || event.shiftKey || event.ctrlKey || event.metaKey) !== on.panning();
+    pans = (event.button === 2 || event.shiftKey || event.ctrlKey || event.metaKey) !== on.isPanning();
     pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
   });
 
@@ -56,8 +56,8 @@ function attach_pointers(stage, on) {
     if (!last) return;
     const dx = event.clientX - last.x;
     const dy = event.clientY - last.y;
-    if (!dragging && Math.hypot(dx, dy) < kDragThreshold) return;
-    if (!dragging && Math.abs(dy) > Math.abs(dx) && scrolls_page(stage, event)) return;
+    if (!dragging && Math.hypot(dx, dy) < DRAG_THRESHOLD) return;
+    if (!dragging && Math.abs(dy) > Math.abs(dx) && scrollsPage(stage, event)) return;
     if (!dragging) {
       dragging = true;
       on.hold(true);
@@ -65,7 +65,7 @@ function attach_pointers(stage, on) {
     const before = pointers.size === 2 ? pinch() : null;
     last.x = event.clientX;
     last.y = event.clientY;
-    const degrees_per_pixel = 360 / stage.clientHeight;
+    const degreesPerPixel = 360 / stage.clientHeight;
     if (before) {
       const after = pinch();
       const factor = on.dolly(before.gap / after.gap);
@@ -73,7 +73,7 @@ function attach_pointers(stage, on) {
     } else if (pans) {
       on.pan(-dx, dy);
     } else {
-      on.rotate(-dx * degrees_per_pixel, dy * degrees_per_pixel);
+      on.rotate(-dx * degreesPerPixel, dy * degreesPerPixel);
     }
   });
 
@@ -88,19 +88,19 @@ function attach_pointers(stage, on) {
 }
 
 // Returns whether a vertical touch drag scrolls the page. The browser then soon cancels the pointer.
-function scrolls_page(stage, { pointerType }) {
+function scrollsPage(stage, { pointerType }) {
   return pointerType === "touch" && getComputedStyle(stage).touchAction === "pan-y";
 }
 
-function attach_wheel(stage, on) {
-  const pixels_per_unit = [1, 16, 400]; // by deltaMode: pixels, lines, pages
+function attachWheel(stage, on) {
+  const pixelsPerUnit = [1, 16, 400]; // by deltaMode: pixels, lines, pages
   stage.addEventListener(
     "wheel",
     (event) => {
       event.preventDefault();
-      const pixels = event.deltaY * pixels_per_unit[event.deltaMode] * (event.ctrlKey ? kPinchGain : 1);
-      const steps = Math.max(-3, Math.min(3, pixels / kWheelNotch));
-      if (steps !== 0) on.dolly(kDollyStep ** -steps);
+      const pixels = event.deltaY * pixelsPerUnit[event.deltaMode] * (event.ctrlKey ? PINCH_GAIN : 1);
+      const steps = Math.max(-3, Math.min(3, pixels / WHEEL_NOTCH));
+      if (steps !== 0) on.dolly(DOLLY_STEP ** -steps);
     },
     { passive: false },
   );
@@ -108,25 +108,25 @@ function attach_wheel(stage, on) {
 
 // Handles keys on the stage and, if the page does not scroll, on the body. Form fields lose no key. Space
 // plays and pauses even if the page scrolls.
-function attach_keys(stage, on) {
+function attachKeys(stage, on) {
   const arrow = (right, up) => (event) =>
-    step(stage, on, right, up, { pans: event.ctrlKey !== on.panning(), fine: event.shiftKey });
+    step(stage, on, right, up, { pans: event.ctrlKey !== on.isPanning(), fine: event.shiftKey });
   const actions = {
     ArrowLeft: arrow(-1, 0),
     ArrowRight: arrow(1, 0),
     ArrowUp: arrow(0, 1),
     ArrowDown: arrow(0, -1),
-    PageUp: () => on.dolly(kZoomStep),
-    PageDown: () => on.dolly(1 / kZoomStep),
-    "+": () => on.dolly(kZoomStep),
-    "=": () => on.dolly(kZoomStep),
-    "-": () => on.dolly(1 / kZoomStep),
+    PageUp: () => on.dolly(ZOOM_STEP),
+    PageDown: () => on.dolly(1 / ZOOM_STEP),
+    "+": () => on.dolly(ZOOM_STEP),
+    "=": () => on.dolly(ZOOM_STEP),
+    "-": () => on.dolly(1 / ZOOM_STEP),
     0: () => on.reset(),
-    " ": () => on.toggle_play(),
+    " ": () => on.togglePlay(),
   };
   document.addEventListener("keydown", (event) => {
     if (event.target !== stage && event.target !== document.body) return;
-    if (event.target !== stage && event.key !== " " && page_scrolls()) return;
+    if (event.target !== stage && event.key !== " " && pageScrolls()) return;
     if (event.altKey || event.metaKey || (event.ctrlKey && !event.key.startsWith("Arrow"))) return;
     const action = actions[event.key];
     if (!action || (event.key === " " && event.repeat)) return;
@@ -135,6 +135,6 @@ function attach_keys(stage, on) {
   });
 }
 
-function page_scrolls() {
+function pageScrolls() {
   return document.documentElement.scrollHeight > innerHeight;
 }

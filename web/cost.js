@@ -5,31 +5,34 @@ export class Cost {
 
   // Records that `picture` took `ms`.
   note(picture, ms) {
-    if (ms > 0) this.#ms.set(kind_of(picture), ms / amount(picture));
+    if (ms > 0) this.#ms.set(kindOf(picture), ms / amount(picture));
   }
 
   knows(picture) {
-    return this.#ms.has(kind_of(picture));
+    return this.#ms.has(kindOf(picture));
   }
 
   // Returns NaN before the first picture of the same scene and technique. Assumes equal cost per sample.
-  expected_ms(picture) {
-    return (this.#ms.get(kind_of(picture)) ?? NaN) * amount(picture);
+  expectedMs(picture) {
+    return (this.#ms.get(kindOf(picture)) ?? NaN) * amount(picture);
   }
 
   // Returns the index of the first picture estimated to take at most `ms`, else the last index.
-  first_within(pictures, ms) {
-    return first_within(pictures.map((picture) => this.expected_ms(picture)), ms);
+  firstWithin(pictures, ms) {
+    return firstWithin(
+      pictures.map((picture) => this.expectedMs(picture)),
+      ms,
+    );
   }
 }
 
 // Returns the index of the first time that is at most `ms`, else the last index.
-export function first_within(times, ms) {
+export function firstWithin(times, ms) {
   const at = times.findIndex((time) => time <= ms);
   return at < 0 ? times.length - 1 : at;
 }
 
-const kind_of = ({ id, technique }) => `${id} ${technique}`;
+const kindOf = ({ id, technique }) => `${id} ${technique}`;
 
 // Returns the number of samples over all pixels, a measure of cost.
 export const amount = ({ width, height, samples }) => width * height * Math.max(1, samples);

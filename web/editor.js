@@ -2,11 +2,11 @@
 // it: the service evicts unused scenes.
 
 import { Gutter } from "./gutter.js";
-import { locate, offset_of, place_of } from "./pointer.js";
-import { hide_problem, places_of, show_problem } from "./problem.js";
+import { locate, offsetOf, placeOf } from "./pointer.js";
+import { hideProblem, placesOf, showProblem } from "./problem.js";
 
-const kLetterWidth = 0.61; // letter width in em of monospaced fonts
-const kCheckMs = 500; // delay after the last key
+const LETTER_WIDTH = 0.61; // letter width in em of monospaced fonts
+const CHECK_MS = 500; // delay after the last key
 
 export class Editor {
   #parts;
@@ -15,19 +15,19 @@ export class Editor {
   #loaded = ""; // text as last loaded or applied
   #draft = ""; // unapplied edit that another scene has replaced
   #timer = 0;
-  #turn = 0; // counts edits, loads and attempts, to drop late responses
-  #told = ""; // content of the card
+  #attempt = 0; // counts edits, loads and attempts, to drop late responses
+  #shownError = ""; // content of the card
 
-  // `parts`: {text, card, note, lines, apply, restore}. `on_apply` and `on_check` take the text and return a
+  // `parts`: {text, card, note, lines, apply, restore}. `onApply` and `onCheck` take the text and return a
   // promise. The card shows the errors that they throw.
-  constructor(parts, on_apply, on_check) {
+  constructor(parts, onApply, onCheck) {
     this.#parts = parts;
     this.#text = parts.text;
     this.#gutter = new Gutter(parts.lines, parts.text);
     const apply = async () => {
       parts.apply.disabled = true;
       try {
-        await this.#try(on_apply, true);
+        await this.#run(onApply, true);
       } finally {
         parts.apply.disabled = false;
       }
@@ -39,15 +39,15 @@ export class Editor {
       apply();
     });
     this.#text.addEventListener("input", () => {
-      this.#changed();
-      this.#timer = setTimeout(() => this.#try(on_check, false), kCheckMs);
+      this.#onEdit();
+      this.#timer = setTimeout(() => this.#run(onCheck, false), CHECK_MS);
     });
     parts.restore.addEventListener("click", () => {
       const { value } = this.#text;
       this.#text.value = this.#draft;
       this.#draft = value === this.#loaded ? "" : value;
-      this.#changed();
-      this.#try(on_check, false);
+      this.#onEdit();
+      this.#run(onCheck, false);
       this.#text.focus();
     });
   }
@@ -60,52 +60,49 @@ export class Editor {
       this.#text.scrollTop = 0;
     }
     this.#loaded = text;
-    this.#changed();
-    this.#tell(null);
+    this.#onEdit();
+    this.#showError(null);
   }
 
-  #changed() {
+  #onEdit() {
     clearTimeout(this.#timer);
-    this.#turn += 1;
-    this.#parts.note.textContent = this.#text.value === this.#loaded ? "" : "Edited, not applied yet";
+    this.#attempt += 1;
+    this.#parts.note.textContent = this.#text.value === this.#loaded ? "" : "Not applied yet";
     this.#parts.restore.hidden = this.#draft === "";
     this.#gutter.update();
   }
 
-  // Runs `action` on the text and reports its error. A retryable error is reported only with `tell_all`.
-  async #try(action, tell_all) {
+  // Runs `action` on the text and reports its error. A retryable error is reported only with `reportsAll`.
+  async #run(action, reportsAll) {
     clearTimeout(this.#timer);
-    const turn = ++this.#turn;
+    const attempt = ++this.#attempt;
     let problem = null;
     try {
       await action(this.#text.value);
     } catch (error) {
       problem = error;
     }
-    if (turn === this.#turn && (tell_all || !problem?.retryable)) this.#tell(problem);
+    if (attempt === this.#attempt && (reportsAll || !problem?.retryable)) this.#showError(problem);
   }
 
-  #tell(error) {
-    const places = error ? places_of(error) : [];
+  #showError(error) {
+    const places = error ? placesOf(error) : [];
     const text = this.#text.value;
-    const faults = places.map((place) => [
-      place_of(text, this.#range(place)[0]).line,
-      place.detail ?? error.detail,
-    ]);
+    const faults = places.map((place) => [placeOf(text, this.#range(place)[0]).line, place.detail ?? error.detail]);
     this.#gutter.update(new Map(faults.reverse()));
     this.#text.setAttribute("aria-invalid", String(error !== null));
     const { card } = this.#parts;
-    const told = error ? JSON.stringify([error.title, error.detail, places]) : "";
-    if (told === this.#told && !card.hidden) return;
-    this.#told = told;
-    if (error) show_problem(card, error, (place) => this.#go_to(place));
-    else hide_problem(card);
+    const shown = error ? JSON.stringify([error.title, error.detail, places]) : "";
+    if (shown === this.#shownError && !card.hidden) return;
+    this.#shownError = shown;
+    if (error) showProblem(card, error, (place) => this.#goTo(place));
+    else hideProblem(card);
   }
 
   #range(place) {
     const text = this.#text.value;
     if (place.line) {
-      const at = offset_of(text, place.line, place.column);
+      const at = offsetOf(text, place.line, place.column);
       return [at, Math.min(at + 1, text.length)];
     }
     // The message for an unknown key quotes the key.
@@ -113,18 +110,18 @@ export class Editor {
     return locate(text, place.pointer, key);
   }
 
-  #go_to(place) {
+  #goTo(place) {
     const range = this.#range(place);
     this.#text.focus();
     this.#text.setSelectionRange(...range);
-    this.#scroll_to(...range);
+    this.#scrollTo(...range);
   }
 
   // Scrolls to a selection, which setSelectionRange() does not do.
-  #scroll_to(start, end) {
-    const { line, column } = place_of(this.#text.value, start);
+  #scrollTo(start, end) {
+    const { line, column } = placeOf(this.#text.value, start);
     const { fontSize, lineHeight } = getComputedStyle(this.#text);
-    const right = kLetterWidth * Number.parseFloat(fontSize) * (column + end - start + 3);
+    const right = LETTER_WIDTH * Number.parseFloat(fontSize) * (column + end - start + 3);
     this.#text.scrollTop = Math.max(0, (line - 4) * Number.parseFloat(lineHeight));
     this.#text.scrollLeft = Math.max(0, right - this.#text.clientWidth);
   }

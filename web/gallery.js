@@ -1,10 +1,10 @@
 // List box of sample scenes: a single tab stop, navigated with arrows, Home, End and first letters.
 
 import { element } from "./problem.js";
-import { thumbnail_of, title_of } from "./scenes.js";
+import { thumbnailOf, titleOf } from "./scenes.js";
 
-const kFirst = "paper";
-const kHeadings = {
+const FIRST = "paper";
+const HEADINGS = {
   // by prefix of the sample's name, in display order
   "": "",
   material: "Materials",
@@ -14,13 +14,13 @@ const kHeadings = {
   technique: "Techniques",
 };
 
-function kind_of(sample) {
+function kindOf(sample) {
   const start = sample.name.split("-")[0];
-  return start in kHeadings ? start : "";
+  return start in HEADINGS ? start : "";
 }
 
 // Returns the index that `key` leads to from the option `at`, or null if it leads nowhere.
-export function next_option(key, at, titles) {
+export function nextOption(key, at, titles) {
   const last = titles.length - 1;
   const moves = {
     ArrowDown: Math.min(last, at + 1),
@@ -39,26 +39,31 @@ export function next_option(key, at, titles) {
 
 export class Gallery {
   #root;
-  #library;
-  #on_pick;
+  #onPick;
 
-  constructor(root, library, on_pick) {
+  // Lists the samples of the catalog in `root`. Calls `onPick(name)` if the user picks one.
+  constructor(root, store, onPick) {
     this.#root = root;
-    this.#library = library;
-    this.#on_pick = on_pick;
+    this.#onPick = onPick;
     root.addEventListener("keydown", (event) => this.#move(event));
-    root.replaceChildren(...Object.keys(kHeadings).flatMap((kind) => this.#group(kind)));
+    store.subscribe(["catalog"], ({ catalog }) => {
+      const samples = catalog?.samples ?? [];
+      root.replaceChildren(...Object.keys(HEADINGS).flatMap((kind) => this.#group(kind, samples)));
+    });
+    store.subscribe(["catalog", "ref"], ({ ref }) => this.#mark(ref));
   }
 
   // Selects the scene `ref` if it is a sample.
-  mark(ref) {
+  #mark(ref) {
     const options = this.#options();
     for (const option of options) option.setAttribute("aria-selected", String(option.dataset.name === ref));
-    this.#set_stop(options.find((option) => option.dataset.name === ref) ?? options[0]);
+    this.#setStop(options.find((option) => option.dataset.name === ref) ?? options[0]);
   }
 
   focus() {
-    this.#options().find((option) => option.tabIndex === 0)?.focus();
+    this.#options()
+      .find((option) => option.tabIndex === 0)
+      ?.focus();
   }
 
   #options() {
@@ -66,7 +71,7 @@ export class Gallery {
   }
 
   // Makes `chosen` the only tab stop.
-  #set_stop(chosen) {
+  #setStop(chosen) {
     for (const option of this.#options()) option.tabIndex = option === chosen ? 0 : -1;
   }
 
@@ -75,23 +80,23 @@ export class Gallery {
     const options = this.#options();
     const at = options.indexOf(document.activeElement);
     const titles = options.map((option) => option.querySelector("strong").textContent);
-    const next = next_option(event.key, at, titles);
+    const next = nextOption(event.key, at, titles);
     if (next === null) return;
     event.preventDefault();
-    this.#set_stop(options[next]);
+    this.#setStop(options[next]);
     options[next].focus();
   }
 
-  #group(kind) {
-    const members = this.#library.samples.filter((sample) => kind_of(sample) === kind);
+  #group(kind, samples) {
+    const members = samples.filter((sample) => kindOf(sample) === kind);
     if (members.length === 0) return [];
-    members.sort((a, b) => (b.name === kFirst) - (a.name === kFirst));
+    members.sort((a, b) => (b.name === FIRST) - (a.name === FIRST));
     const list = element("ul");
     list.role = "group";
-    list.ariaLabel = kHeadings[kind] || "Scenes";
-    const heading = element("li", kHeadings[kind], "heading");
+    list.ariaLabel = HEADINGS[kind] || "Scenes";
+    const heading = element("li", HEADINGS[kind], "heading");
     heading.ariaHidden = "true"; // the group's label says it
-    list.append(...(kHeadings[kind] ? [heading] : []), ...members.map((sample) => this.#row(sample)));
+    list.append(...(HEADINGS[kind] ? [heading] : []), ...members.map((sample) => this.#row(sample)));
     return [list];
   }
 
@@ -99,14 +104,14 @@ export class Gallery {
     const thumbnail = element("img", "", "thumbnail");
     thumbnail.alt = "";
     thumbnail.loading = "lazy";
-    thumbnail.src = thumbnail_of(sample);
+    thumbnail.src = thumbnailOf(sample);
     const text = element("span", "", "words");
-    text.append(element("strong", title_of(sample)), element("span", sample.description));
+    text.append(element("strong", titleOf(sample)), element("span", sample.description));
     const button = element("button");
     button.role = "option";
     button.dataset.name = sample.name;
     button.append(thumbnail, text);
-    button.addEventListener("click", () => this.#on_pick(sample.name));
+    button.addEventListener("click", () => this.#onPick(sample.name));
     const row = element("li");
     row.role = "none";
     row.append(button);

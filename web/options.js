@@ -1,18 +1,16 @@
 // Selects under the picture: technique, samples, size.
 
-import { fixed_size, kModes, within } from "./size.js";
+import { fixedSize, MODES, within } from "./size.js";
 
-const kSamples = [1, 4, 16, 64];
+const SAMPLES = [1, 4, 16, 64];
 
 // Fills `select` with `options`, each [value, label, title]. Adds `value` if it is missing: a link may ask
 // for it.
 function fill(select, options, value) {
-  const is_chosen = ([key]) => String(key) === String(value);
-  const all = options.some(is_chosen) ? options : [...options, [value, value]];
+  const isChosen = ([key]) => String(key) === String(value);
+  const all = options.some(isChosen) ? options : [...options, [value, value]];
   select.replaceChildren(
-    ...all.map(([key, label, title = ""]) =>
-      Object.assign(new Option(label, key, false, is_chosen([key])), { title }),
-    ),
+    ...all.map(([key, label, title = ""]) => Object.assign(new Option(label, key, false, isChosen([key])), { title })),
   );
 }
 
@@ -20,42 +18,39 @@ const sentence = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
 export class Options {
   #selects;
-  #catalog;
-  #limits;
 
-  // `selects`: {technique, samples, size}. `on_change` gets the key and the new value.
-  constructor(selects, catalog, limits, on_change) {
+  // `selects`: {technique, samples, size}. `onChange` gets the key and the new value.
+  constructor(selects, store, onChange) {
     this.#selects = selects;
-    this.#catalog = catalog;
-    this.#limits = limits;
     for (const [key, select] of Object.entries(selects)) {
-      select.addEventListener("change", () =>
-        on_change(key, key === "samples" ? Number(select.value) : select.value),
-      );
+      select.addEventListener("change", () => onChange(key, key === "samples" ? Number(select.value) : select.value));
     }
+    store.subscribe(["catalog", "limits", "scene", "technique", "samples", "size"], (values) => this.#show(values));
   }
 
-  // Lists the choices for `scene` (null: none yet) and selects those of `state`.
-  show(state, scene) {
-    const { technique, samples, size } = this.#selects;
-    const { techniques = [] } = this.#catalog;
+  #show({ catalog, limits, scene, technique, samples, size }) {
+    const { techniques = [] } = catalog ?? {};
     const names = techniques.map(({ type, summary }) => [type, sentence(type), summary]);
-    fill(technique, [["", "Scene’s own"], ...names], state.technique);
-    const counts = kSamples.filter((count) => count <= this.#limits.samples);
-    fill(samples, [[0, "Automatic"], ...counts.map((count) => [count, count])], state.samples);
-    const sizes = kModes.filter((mode) => this.#fits(fixed_size(mode)));
-    fill(size, sizes.map((mode) => [mode, size_label(mode, scene)]), state.size);
-  }
-
-  #fits(fixed) {
-    const { side, pixels } = this.#limits;
-    return !fixed || within(fixed, side, pixels).width === fixed.width;
+    fill(this.#selects.technique, [["", "Scene default"], ...names], technique);
+    const counts = SAMPLES.filter((count) => count <= limits.samples);
+    fill(this.#selects.samples, [[0, "Automatic"], ...counts.map((count) => [count, count])], samples);
+    const modes = MODES.filter((mode) => fits(fixedSize(mode), limits));
+    fill(
+      this.#selects.size,
+      modes.map((mode) => [mode, sizeLabel(mode, scene)]),
+      size,
+    );
   }
 }
 
-function size_label(mode, scene) {
-  if (mode === "fit") return "Fit the window";
-  if (mode === "half") return "Half the window";
-  if (mode === "scene") return scene ? `Scene’s own, ${scene.width} × ${scene.height}` : "Scene’s own";
+// Returns whether the service renders pictures of a fixed size. null fits: the page chooses the size.
+function fits(size, { side, pixels }) {
+  return !size || within(size, side, pixels).width === size.width;
+}
+
+function sizeLabel(mode, scene) {
+  if (mode === "fit") return "Fit window";
+  if (mode === "half") return "Half window";
+  if (mode === "scene") return scene ? `Scene default, ${scene.width} × ${scene.height}` : "Scene default";
   return mode.replace("x", " × ");
 }

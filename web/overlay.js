@@ -1,6 +1,6 @@
 // Temporary pictures over the stage, such as a chart's. Each is fetched once and fades into the next.
 
-import { get_frame } from "./api.js";
+import { getFrame } from "./api.js";
 import { decode } from "./view.js";
 
 export class Overlay {
@@ -71,14 +71,17 @@ export class Overlay {
     for (const [address, picture] of this.#pictures) {
       if (address === this.#wanted || this.#ahead.includes(address)) continue;
       this.#pictures.delete(address);
-      picture.then((bitmap) => bitmap.close(), () => {});
+      picture.then(
+        (bitmap) => bitmap.close(),
+        () => {},
+      );
     }
   }
 
   #picture(address) {
     const known = this.#pictures.get(address);
     if (known) return known;
-    const fetched = get_frame(address).then(({ png }) => decode(png));
+    const fetched = getFrame(address).then(({ png }) => decode(png));
     this.#pictures.set(address, fetched);
     fetched.catch(() => this.#pictures.delete(address));
     return fetched;

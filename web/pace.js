@@ -2,25 +2,25 @@
 // stream is then requested again: at a coarser level if it stutters, else with fewer frames and a wider step.
 // A finer level is requested if it would not stutter.
 
-import { first_within } from "./cost.js";
+import { firstWithin } from "./cost.js";
 
-const kMostFps = 30;
-const kSmoothFps = 12; // an orbit stutters below this
-const kFinerFps = 16; // predicted rate that a finer level needs
-const kFinerAfterMs = 200; // shortest measurement before a finer level
-const kAgainMs = 5000; // delay before a level that was too slow is retried
-const kTolerance = 0.85; // smallest fraction of the planned rate
-const kWindowMs = 1000; // shortest measurement of the rate, with three frames or one gap of kLongGapMs
-const kLongGapMs = 1500;
-const kWidestStep = 10; // degrees; an orbit with wider steps is a slide show
+const MAX_FPS = 30;
+const SMOOTH_FPS = 12; // an orbit stutters below this
+const FINER_FPS = 16; // predicted rate that a finer level needs
+const FINER_AFTER_MS = 200; // shortest measurement before a finer level
+const RETRY_MS = 5000; // delay before a level that was too slow is retried
+const TOLERANCE = 0.85; // smallest fraction of the planned rate
+const WINDOW_MS = 1000; // shortest measurement of the rate, with three frames or one gap of LONG_GAP_MS
+const LONG_GAP_MS = 1500;
+const MAX_STEP_DEGREES = 10; // degrees; an orbit with wider steps is a slide show
 
 export class Pace {
-  fps = kMostFps;
+  fps = MAX_FPS;
   level = 0; // 0: as requested; each level above is coarser
   #kind = ""; // picture options that the level was found for
   #slow = { level: -1, until: 0 }; // last level that was too slow
   #times = [];
-  #longest_ms = 0; // longest work for a frame in #times
+  #longestMs = 0; // longest work for a frame in #times
 
   // Starts an orbit of `picture` at `level`, or at the level found before. A new window size keeps that
   // level, a new choice of the user does not.
@@ -29,59 +29,59 @@ export class Pace {
     if (kind === this.#kind) return;
     this.#kind = kind;
     this.#slow = { level: -1, until: 0 };
-    this.#change_level(level);
+    this.#changeLevel(level);
     this.restart();
   }
 
   // Drops the measurements before a new stream.
   restart() {
     this.#times = [];
-    this.#longest_ms = 0;
+    this.#longestMs = 0;
   }
 
-  // Records a frame shown at `now` (ms) that took the service `work_ms`. `costs`: relative costs of the
+  // Records a frame shown at `now` (ms) that took the service `workMs`. `costs`: relative costs of the
   // levels, decreasing. Returns whether fps or level changed, and the stream should be requested again.
-  note(now, work_ms, speed, costs) {
+  note(now, workMs, speed, costs) {
     const expected = (ms) => costs.map((cost) => (ms * cost) / costs[this.level]);
-    if (work_ms > 1000 / kSmoothFps && this.level < costs.length - 1) {
-      const smooth = first_within(expected(work_ms), 1000 / kSmoothFps);
-      return this.#get_coarser(now, Math.max(smooth, this.level + 1));
+    if (workMs > 1000 / SMOOTH_FPS && this.level < costs.length - 1) {
+      const smooth = firstWithin(expected(workMs), 1000 / SMOOTH_FPS);
+      return this.#getCoarser(now, Math.max(smooth, this.level + 1));
     }
     this.#times.push(now);
-    this.#longest_ms = Math.max(this.#longest_ms, work_ms);
+    this.#longestMs = Math.max(this.#longestMs, workMs);
     const span = now - this.#times[0];
     const count = this.#times.length - 1;
     const rate = (count * 1000) / span;
-    if (count >= 3 && span >= kFinerAfterMs && rate >= kFinerFps) {
+    if (count >= 3 && span >= FINER_AFTER_MS && rate >= FINER_FPS) {
       const finest = now < this.#slow.until ? this.#slow.level + 1 : 0;
-      const level = Math.max(finest, first_within(expected(this.#longest_ms), 1000 / kFinerFps));
-      if (level < this.level) return this.#change_level(level);
+      const level = Math.max(finest, firstWithin(expected(this.#longestMs), 1000 / FINER_FPS));
+      if (level < this.level) return this.#changeLevel(level);
     }
-    if (count < 1 || !((span >= kWindowMs && count >= 3) || span >= kLongGapMs)) return false;
+    if (count < 1 || !((span >= WINDOW_MS && count >= 3) || span >= LONG_GAP_MS)) return false;
     this.restart();
     this.#times = [now];
-    if (rate < kTolerance * this.fps) return this.#slow_down(now, rate, speed, this.level < costs.length - 1);
-    const possible = Math.min(kMostFps, 700 / work_ms);
+    if (rate < TOLERANCE * this.fps) return this.#slowDown(now, rate, speed, this.level < costs.length - 1);
+    const possible = Math.min(MAX_FPS, 700 / workMs);
     if (possible < 1.3 * this.fps) return false;
     this.fps = possible;
     return true;
   }
 
-  #change_level(level) {
+  #changeLevel(level) {
     this.level = level;
-    this.fps = kMostFps;
+    this.fps = MAX_FPS;
     return true;
   }
 
-  #get_coarser(now, level) {
-    this.#slow = { level: level - 1, until: now + kAgainMs };
-    return this.#change_level(level);
+  #getCoarser(now, level) {
+    this.#slow = { level: level - 1, until: now + RETRY_MS };
+    return this.#changeLevel(level);
   }
 
-  #slow_down(now, rate, speed, coarser) {
-    if (rate < kSmoothFps && coarser) return this.#get_coarser(now, this.level + 1);
+  #slowDown(now, rate, speed, coarser) {
+    if (rate < SMOOTH_FPS && coarser) return this.#getCoarser(now, this.level + 1);
     const before = this.fps;
-    this.fps = Math.min(before, Math.max(rate, Math.abs(speed) / kWidestStep));
+    this.fps = Math.min(before, Math.max(rate, Math.abs(speed) / MAX_STEP_DEGREES));
     return this.fps < before;
   }
 }

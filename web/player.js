@@ -1,54 +1,54 @@
 // Chooses the picture on the canvas: the orbit stream while playing, previews while the view moves by hand,
 // refined stills at rest. A scene that is new to the canvas starts with the cheapest picture.
 
-import { get_frame, is_abort } from "./api.js";
+import { getFrame, isAbort } from "./api.js";
 import { Backoff } from "./backoff.js";
 import { amount, Cost } from "./cost.js";
-import { play_stream } from "./orbit_stream.js";
+import { playStream } from "./orbit-stream.js";
 import { Pace } from "./pace.js";
-import { decode_unless, Refiner } from "./refine.js";
-import { frame_url, orbit_url } from "./urls.js";
+import { decodeUnlessAborted, Refiner } from "./refine.js";
+import { frameUrl, orbitUrl } from "./urls.js";
 import { decode } from "./view.js";
 
-const kRestMs = 100; // time without input until the view is at rest
-const kRestartMs = 150; // debounce time of size and speed changes
-const kPreviewMs = 75; // target latency of previews, from request to display
-const kFrameMs = 60; // target render time of orbit frames before the first measurement
-const kDraftMs = 100; // a draft precedes a first picture that takes longer
+const REST_MS = 100; // time without input until the view is at rest
+const RESTART_MS = 150; // debounce time of size and speed changes
+const PREVIEW_MS = 75; // target latency of previews, from request to display
+const FRAME_MS = 60; // target render time of orbit frames before the first measurement
+const DRAFT_MS = 100; // a draft precedes a first picture that takes longer
 
 // `on` has
-//   moving(purpose, view) -> pictures, each cheaper than the one before, [] without a scene
-//   at_rest(view) -> {picture, asked} or null
-//   missing() -> promise; posts the scene again
-//   stats(kind, figures), waiting(error, seconds), problem(error), progress(figures or null)
-//   stale() if another picture is due
+//   movingPictures(purpose, view) -> pictures, each cheaper than the one before, [] without a scene
+//   pictureAtRest(view) -> {picture, isRequested} or null. isRequested: the user has chosen the samples
+//   repost() -> promise; posts the scene again and refreshes the player
+//   drawn(kind, figures), retrying(error, seconds), failed(error), progress(figures or null)
+//   stopped() if another picture is due
 //   settled() if the view no longer moves
-//   rested() if the picture is final
+//   finished() if the picture is final
 export class Player {
   speed = 20; // degrees per second
-  stream_frames = 3600;
+  streamFrames = 3600;
   #camera;
   #view;
   #on;
-  #playing = false;
-  #visible = true;
-  #held = false; // true during a drag: no stream until it ends
-  #moving = false; // true while the view moves by hand, and kRestMs longer
-  #last_input = 0;
-  #last_tick = 0;
+  #isPlaying = false;
+  #isVisible = true;
+  #isHeld = false; // true during a drag: no stream until it ends
+  #isMoving = false; // true while the view moves by hand, and REST_MS longer
+  #lastInput = 0;
+  #lastTick = 0;
   #work = null; // {kind, key, abort} of the current stream or still
   #shown = ""; // address of the still on the canvas
-  #shown_samples = 0; // samples of the picture on the canvas
-  #shown_location; // address that reproduces a picture made to a budget
-  #shown_figures; // figures of the picture on the canvas
-  #shown_id = ""; // id of the scene on the canvas
+  #shownSamples = 0; // samples of the picture on the canvas
+  #shownLocation; // address that reproduces a picture made to a budget
+  #shownFigures; // figures of the picture on the canvas
+  #shownId = ""; // id of the scene on the canvas
   #cost = new Cost(); // render times
   #delay = new Cost(); // latencies of previews, from request to display
   #refiner = new Refiner(this.#cost);
-  #preview_busy = false;
+  #isPreviewing = false;
   #epoch = 0; // counts invalidations, to drop late previews
   // Earliest time of the next preview after a failure.
-  #preview_from = 0;
+  #previewFrom = 0;
   #pace = new Pace();
   #backoff = new Backoff();
   #timer = 0;
@@ -58,30 +58,28 @@ export class Player {
     this.#camera = camera;
     this.#view = view;
     this.#on = on;
-    document.addEventListener("visibilitychange", () =>
-      this.#show_tab(document.visibilityState === "visible"),
-    );
-    this.#visible = document.visibilityState === "visible";
-    addEventListener("online", () => this.retry_now());
+    document.addEventListener("visibilitychange", () => this.#showTab(document.visibilityState === "visible"));
+    this.#isVisible = document.visibilityState === "visible";
+    addEventListener("online", () => this.retryNow());
   }
 
   set playing(playing) {
-    this.#playing = playing;
+    this.#isPlaying = playing;
     this.refresh();
   }
 
   // Shows previews of the moving view until it rests.
   input() {
-    this.#last_input = performance.now();
-    if (this.#moving) return;
-    this.#moving = true;
+    this.#lastInput = performance.now();
+    if (this.#isMoving) return;
+    this.#isMoving = true;
     this.#stop();
-    this.#last_tick = this.#last_input;
+    this.#lastTick = this.#lastInput;
     requestAnimationFrame((now) => this.#tick(now));
   }
 
   hold(held) {
-    this.#held = held;
+    this.#isHeld = held;
     if (held) this.input();
     else this.refresh();
   }
@@ -89,18 +87,18 @@ export class Player {
   // Shows the picture or stream for the current scene, size and options.
   refresh() {
     clearTimeout(this.#timer);
-    if (this.#moving) return;
-    if (!this.#visible) return this.#stop();
-    if (this.#playing && !this.#held) this.#start_stream();
-    else this.#start_still();
+    if (this.#isMoving) return;
+    if (!this.#isVisible) return this.#stop();
+    if (this.#isPlaying && !this.#isHeld) this.#startStream();
+    else this.#startStill();
   }
 
-  refresh_soon() {
+  refreshSoon() {
     clearTimeout(this.#timer);
-    this.#timer = setTimeout(() => this.refresh(), kRestartMs);
+    this.#timer = setTimeout(() => this.refresh(), RESTART_MS);
   }
 
-  retry_now() {
+  retryNow() {
     this.#backoff.reset();
     this.refresh();
   }
@@ -108,39 +106,39 @@ export class Player {
   // Makes the next refresh fetch even an equal picture.
   invalidate() {
     this.#stop();
-    this.#shown = this.#shown_id = "";
+    this.#shown = this.#shownId = "";
     this.#epoch += 1;
   }
 
   // Picture to share: the one on the canvas if the view is at rest, else the last one of its refinement.
   get picture() {
-    const { picture, asked } = this.#on.at_rest(this.#camera.goal);
-    const seen = this.#seen_of(picture);
-    if (seen) return { ...seen, location: this.#shown_location };
-    return keeps_budget(picture) ? picture : this.#refiner.last(picture, asked);
+    const { picture, isRequested } = this.#on.pictureAtRest(this.#camera.goal);
+    const shown = this.#shownPicture(picture);
+    if (shown) return { ...shown, location: this.#shownLocation };
+    return hasBudget(picture) ? picture : this.#refiner.last(picture, isRequested);
   }
 
   // Returns the picture on the canvas if it is `picture` with any number of samples, else null.
-  #seen_of(picture) {
-    const seen = { ...picture, samples: this.#shown_samples };
-    return frame_url(seen) === this.#shown ? seen : null;
+  #shownPicture(picture) {
+    const shown = { ...picture, samples: this.#shownSamples };
+    return frameUrl(shown) === this.#shown ? shown : null;
   }
 
-  #show_tab(visible) {
-    this.#visible = visible;
+  #showTab(visible) {
+    this.#isVisible = visible;
     this.refresh();
   }
 
   #tick(now) {
-    const seconds = Math.max(0, Math.min(0.1, (now - this.#last_tick) / 1000));
+    const seconds = Math.max(0, Math.min(0.1, (now - this.#lastTick) / 1000));
     const gliding = this.#camera.step(seconds, this.#view.box.height);
-    this.#last_tick = now;
-    if (gliding || now - this.#last_input < kRestMs) {
+    this.#lastTick = now;
+    if (gliding || now - this.#lastInput < REST_MS) {
       this.#preview();
       requestAnimationFrame((next) => this.#tick(next));
       return;
     }
-    this.#moving = false;
+    this.#isMoving = false;
     this.#on.settled();
     this.refresh();
   }
@@ -148,111 +146,111 @@ export class Player {
   // Shows a preview. One is in flight at a time; the next one catches up with the camera.
   async #preview() {
     const start = performance.now();
-    const waits = this.#preview_busy || start < this.#preview_from;
-    const picture = waits ? null : this.#preview_picture();
-    const url = picture && frame_url(picture);
+    const waits = this.#isPreviewing || start < this.#previewFrom;
+    const picture = waits ? null : this.#previewPicture();
+    const url = picture && frameUrl(picture);
     if (!url || url === this.#shown) return;
-    this.#preview_busy = true;
+    this.#isPreviewing = true;
     const epoch = this.#epoch;
     try {
-      const frame = await get_frame(url);
-      this.#cost.note(picture, frame.stats.render_ms);
+      const frame = await getFrame(url);
+      this.#cost.note(picture, frame.stats.renderMs);
       const bitmap = await decode(frame.png);
-      if (this.#moving && epoch === this.#epoch) this.#draw(url, bitmap, picture, "preview", frame.stats);
+      if (this.#isMoving && epoch === this.#epoch) this.#draw(url, bitmap, picture, "preview", frame.stats);
       else bitmap.close();
       this.#delay.note(picture, performance.now() - start);
     } catch (error) {
       // The following still fails in the same way and reports it.
-      this.#preview_from = performance.now() + 1000 * (error.retry_after_seconds ?? 1);
+      this.#previewFrom = performance.now() + 1000 * (error.retryAfterSeconds ?? 1);
     } finally {
-      this.#preview_busy = false;
+      this.#isPreviewing = false;
     }
   }
 
-  // Returns the finest picture expected within kPreviewMs, or null without a scene.
-  #preview_picture() {
-    const pictures = this.#on.moving("preview", this.#camera.view);
+  // Returns the finest picture expected within PREVIEW_MS, or null without a scene.
+  #previewPicture() {
+    const pictures = this.#on.movingPictures("preview", this.#camera.view);
     if (pictures.length === 0) return null;
     const cost = this.#delay.knows(pictures[0]) ? this.#delay : this.#cost;
-    return pictures[cost.first_within(pictures, kPreviewMs)];
+    return pictures[cost.firstWithin(pictures, PREVIEW_MS)];
   }
 
   // Shows a draft of a scene that is new to the canvas, unless the `first` picture is fast enough.
   async #draft(first, signal) {
-    if (this.#shown_id === first.id || this.#cost.expected_ms(first) <= kDraftMs) return;
-    const pictures = this.#on.moving("preview", this.#camera.view);
-    const picture = pictures[this.#cost.first_within(pictures, kDraftMs)];
-    const { png, stats } = await get_frame(frame_url(picture), signal);
-    this.#cost.note(picture, stats.render_ms);
-    this.#draw("", await decode_unless(signal, png), picture, "preview", stats);
+    if (this.#shownId === first.id || this.#cost.expectedMs(first) <= DRAFT_MS) return;
+    const pictures = this.#on.movingPictures("preview", this.#camera.view);
+    const picture = pictures[this.#cost.firstWithin(pictures, DRAFT_MS)];
+    const { png, stats } = await getFrame(frameUrl(picture), signal);
+    this.#cost.note(picture, stats.renderMs);
+    this.#draw("", await decodeUnlessAborted(signal, png), picture, "preview", stats);
   }
 
-  #start_still() {
-    const rest = this.#on.at_rest(this.#camera.view);
+  #startStill() {
+    const rest = this.#on.pictureAtRest(this.#camera.view);
     if (!rest) return;
     // A held orbit shows one sample without a budget.
-    const picture = this.#playing ? { ...rest.picture, samples: 1, seconds: 0, error: 0 } : rest.picture;
-    const key = frame_url(picture);
+    const picture = this.#isPlaying ? { ...rest.picture, samples: 1, seconds: 0, error: 0 } : rest.picture;
+    const key = frameUrl(picture);
     if (this.#work?.kind === "still" && this.#work.key === key) return;
     this.#stop();
-    const { width, height, samples } = this.#seen_of(picture) ?? {};
-    if (width) this.#on.stats("still", { ...this.#shown_figures, width, height });
+    const { width, height, samples } = this.#shownPicture(picture) ?? {};
+    if (width) this.#on.drawn("still", { ...this.#shownFigures, width, height });
     const shown = samples <= picture.samples ? samples : 0; // fewer samples may be wanted than are shown
     this.#run("still", key, async (signal) => {
       await this.#draft({ ...picture, samples: 1 }, signal);
-      if (keeps_budget(picture)) await this.#keep_budget(picture, signal);
+      if (hasBudget(picture)) await this.#renderToBudget(picture, signal);
       else if (shown < picture.samples)
-        await this.#refiner.climb(picture, { shown, asked: rest.asked }, signal, {
-          draw: (each, bitmap, stats) => this.#draw(frame_url(each), bitmap, each, "still", stats),
+        await this.#refiner.refineToEnd(picture, { shown, isRequested: rest.isRequested }, signal, {
+          draw: (each, bitmap, stats) => this.#draw(frameUrl(each), bitmap, each, "still", stats),
           progress: this.#on.progress,
         });
-      this.#on.rested();
+      this.#on.finished();
     });
   }
 
   // Shows the picture that the service renders to a budget.
-  async #keep_budget(picture, signal) {
-    if (this.#shown === frame_url(picture)) return;
-    const { png, stats } = await get_frame(frame_url(picture), signal);
-    const bitmap = await decode_unless(signal, png);
+  async #renderToBudget(picture, signal) {
+    if (this.#shown === frameUrl(picture)) return;
+    const { png, stats } = await getFrame(frameUrl(picture), signal);
+    const bitmap = await decodeUnlessAborted(signal, png);
     const plan = new URLSearchParams(stats.location?.split("?")[1]);
     const samples = Number(plan.get("samples") ?? picture.own); // a plan may leave them to the scene
-    this.#draw(frame_url(picture), bitmap, picture, "still", { ...stats, samples });
-    this.#shown_location = stats.location;
+    this.#draw(frameUrl(picture), bitmap, picture, "still", { ...stats, samples });
+    this.#shownLocation = stats.location;
   }
 
-  #start_stream() {
-    const pictures = this.#on.moving("stream", this.#camera.view);
+  #startStream() {
+    const pictures = this.#on.movingPictures("stream", this.#camera.view);
     if (pictures.length === 0) return;
     const [picture] = pictures;
     const key = JSON.stringify({ ...picture, azimuth: 0, time: 0, speed: this.speed });
     if (this.#work?.kind === "stream" && this.#work.key === key) return;
     this.#stop();
-    this.#pace.play(picture, this.#cost.first_within(pictures, kFrameMs));
+    this.#pace.play(picture, this.#cost.firstWithin(pictures, FRAME_MS));
     this.#run("stream", key, (signal) => this.#stream(signal));
   }
 
-  // Plays streams one after another. Each ends after `stream_frames` frames or if the pace changes.
+  // Plays streams one after another. Each ends after `streamFrames` frames or if the pace changes.
   async #stream(signal) {
     const pace = this.#pace;
     for (;;) {
-      const pictures = this.#on.moving("stream", this.#camera.view);
+      const pictures = this.#on.movingPictures("stream", this.#camera.view);
       const costs = pictures.map(amount);
       pace.level = Math.min(pace.level, pictures.length - 1);
       const picture = pictures[pace.level];
       const rate = {
-        frames: this.stream_frames,
+        frames: this.streamFrames,
         fps: pace.fps,
         step: this.speed / pace.fps,
-        time_step: picture.moves ? 1 / pace.fps : 0,
+        timeStep: picture.isAnimated ? 1 / pace.fps : 0,
       };
       pace.restart();
-      await play_stream(orbit_url(picture, rate), signal, (bitmap, header) => {
-        this.#camera.follow(header.azimuth_degrees, header.time);
-        this.#cost.note(picture, header.render_ms);
-        this.#draw("", bitmap, picture, "stream", header);
-        const work_ms = Math.max(header.render_ms, header.encode_ms);
-        return !pace.note(performance.now(), work_ms, this.speed, costs);
+      await playStream(orbitUrl(picture, rate), signal, (bitmap, figures) => {
+        this.#camera.follow(figures.azimuth, figures.time);
+        this.#cost.note(picture, figures.renderMs);
+        this.#draw("", bitmap, picture, "stream", figures);
+        const workMs = Math.max(figures.renderMs, figures.encodeMs);
+        return !pace.note(performance.now(), workMs, this.speed, costs);
       });
     }
   }
@@ -261,15 +259,15 @@ export class Player {
     const { width, height } = bitmap;
     this.#view.draw(bitmap, picture.fills, kind === "still" && this.#camera.damped);
     this.#shown = url;
-    this.#shown_id = picture.id;
-    this.#shown_samples = picture.samples;
-    this.#shown_location = undefined;
-    this.#shown_figures = figures;
+    this.#shownId = picture.id;
+    this.#shownSamples = picture.samples;
+    this.#shownLocation = undefined;
+    this.#shownFigures = figures;
     this.#reposts = 0;
     this.#backoff.reset();
     if (kind !== "still") this.#on.progress(null);
     const draft = kind === "preview" || (kind === "stream" && this.#pace.level > 0);
-    this.#on.stats(kind, { ...figures, width, height, draft });
+    this.#on.drawn(kind, { ...figures, width, height, draft });
   }
 
   async #run(kind, key, task) {
@@ -279,7 +277,7 @@ export class Player {
     try {
       await task(work.abort.signal);
     } catch (error) {
-      if (this.#work === work && !is_abort(error)) this.#fail(error);
+      if (this.#work === work && !isAbort(error)) this.#fail(error);
     } finally {
       if (this.#work === work) this.#work = null;
       if (!this.#work) this.#on.progress(null);
@@ -290,24 +288,24 @@ export class Player {
     this.#work?.abort.abort();
     this.#work = null;
     this.#on.progress(null);
-    this.#on.stale();
+    this.#on.stopped();
   }
 
   async #fail(error) {
     if (error.status === 404 && this.#reposts < 2) {
       this.#reposts += 1;
       try {
-        return await this.#on.missing(); // missing() refreshes
+        return await this.#on.repost();
       } catch (second) {
         error = second;
       }
     }
-    if (!error.retryable) return this.#on.problem(error);
+    if (!error.retryable) return this.#on.failed(error);
     const seconds = this.#backoff.after(error);
-    this.#on.waiting(error, seconds);
+    this.#on.retrying(error, seconds);
     clearTimeout(this.#timer);
     this.#timer = setTimeout(() => this.refresh(), 1000 * seconds);
   }
 }
 
-const keeps_budget = ({ seconds, error }) => Boolean(seconds || error);
+const hasBudget = ({ seconds, error }) => Boolean(seconds || error);

@@ -1,14 +1,14 @@
 // Error card: message, places (one entry each), actions, and the request id for a report.
 
-export function element(name, text, class_name) {
+export function element(name, text, className) {
   const made = document.createElement(name);
   if (text) made.textContent = text;
-  if (class_name) made.className = class_name;
+  if (className) made.className = className;
   return made;
 }
 
 // Returns the places of an error, each {label, detail, pointer} or {label, line, column}.
-export function places_of(error) {
+export function placesOf(error) {
   const places = (error.errors ?? []).map(({ pointer, detail }) => ({
     label: pointer || "/",
     detail,
@@ -24,23 +24,23 @@ export function places_of(error) {
   return places;
 }
 
-// Fills and shows `card`. Calls `on_place` with the place that the user picks; without it places are plain
+// Fills and shows `card`. Calls `onPlace` with the place that the user picks; without it places are plain
 // text. `actions` are buttons, each [label, function].
-export function show_problem(card, error, on_place, actions = []) {
+export function showProblem(card, error, onPlace, actions = []) {
   const title = element("h2", error.title ?? error.message);
   const close = element("button", "", "close");
   close.ariaLabel = "Dismiss";
-  close.addEventListener("click", () => hide_problem(card));
+  close.addEventListener("click", () => hideProblem(card));
   const parts = [close, title];
-  const places = places_of(error);
+  const places = placesOf(error);
   const repeated = places[0]?.detail && error.detail?.includes(places[0].detail);
   if (error.detail && !repeated) parts.push(element("p", error.detail));
-  if (places.length > 1) parts.push(element("p", `${places.length} places are wrong:`));
+  if (places.length > 1) parts.push(element("p", `${places.length} errors:`));
   if (places.length > 0) {
     const list = element("ul");
     for (const place of places) {
-      const entry = element(on_place ? "button" : "span", "", "place");
-      if (on_place) entry.addEventListener("click", () => on_place(place));
+      const entry = element(onPlace ? "button" : "span", "", "place");
+      if (onPlace) entry.addEventListener("click", () => onPlace(place));
       entry.append(element("code", place.label), element("span", place.detail));
       const row = element("li");
       row.append(entry);
@@ -49,9 +49,9 @@ export function show_problem(card, error, on_place, actions = []) {
     parts.push(list);
   }
   if (actions.length > 0) parts.push(buttons(actions));
-  if (error.request_id) {
-    const request = element("p", "Request ", "request");
-    request.append(element("code", error.request_id));
+  if (error.requestId) {
+    const request = element("p", "Request ID ", "request");
+    request.append(element("code", error.requestId));
     parts.push(request);
   }
   card.replaceChildren(...parts);
@@ -68,7 +68,7 @@ function buttons(actions) {
   return row;
 }
 
-export function hide_problem(card) {
+export function hideProblem(card) {
   card.hidden = true;
   card.replaceChildren();
 }

@@ -8,30 +8,30 @@ function duration(seconds) {
 export const rounded = (rmse) => String(Number(rmse.toPrecision(2)));
 
 // Rounds an upper bound up to two significant digits, within the rounding of a double.
-export function rounded_up(bound) {
+export function roundedUp(bound) {
   if (bound === 0) return "0";
   const unit = 10 ** (Math.floor(Math.log10(bound)) - 1);
   return rounded(Math.ceil(bound / unit - 1e-9) * unit);
 }
 
 // Returns the progress in words. `shown` of `end` samples are on the canvas. `rmse`: root mean square error
-// of a pixel in linear radiance, if known. `part`: finished part of the next picture. `seconds_left`: time to
+// of a pixel in linear radiance, if known. `part`: finished part of the next picture. `secondsLeft`: time to
 // the end.
-export function progress_text({ shown, end, rmse, part, seconds_left }) {
+export function progressText({ shown, end, rmse, part, secondsLeft }) {
   const words = end ? [`${shown} of ${end} samples`] : [];
   if (rmse > 0) words.push(`error ${rounded(rmse)}`);
   if (part !== undefined) words.push(`${Math.floor(100 * part)} %`);
-  if (seconds_left > 0) words.push(`${part === undefined ? "about " : ""}${duration(seconds_left)} left`);
+  if (secondsLeft > 0) words.push(`${part === undefined ? "about " : ""}${duration(secondsLeft)} left`);
   return words.join(" · ");
 }
 
-// Shows `figures` as in progress_text(). {}: nothing is known; null: nothing is being rendered.
-export function show_progress(bar, label, figures) {
+// Shows `figures` as in progressText(). {}: nothing is known; null: nothing is being rendered.
+export function showProgress(bar, label, figures) {
   bar.hidden = label.hidden = !figures;
   if (!figures) return;
-  const text = progress_text(figures);
+  const text = progressText(figures);
   label.textContent = text;
-  bar.ariaValueText = text || "Waiting for the picture";
+  bar.ariaValueText = text || "Waiting for the image";
   bar.classList.toggle("measured", figures.part !== undefined);
   bar.style.setProperty("--part", figures.part ?? 0);
   bar.ariaValueNow = figures.part === undefined ? null : Math.floor(100 * figures.part);

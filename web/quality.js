@@ -1,12 +1,12 @@
 // Quality levels, reduced for speed: samples first, then the picture's size.
 
-const kParts = [0.84, 0.71, 0.59, 0.5, 0.42, 0.35, 0.3, 0.25]; // side factors; two steps halve the pixels
-const kLeastPart = { fit: 0.25, half: 0.5 }; // a quarter of the stage's width in both
-const kUsualSamples = 64;
+const SIDE_FACTORS = [0.84, 0.71, 0.59, 0.5, 0.42, 0.35, 0.3, 0.25]; // side factors; two steps halve the pixels
+const MIN_PART = { fit: 0.25, half: 0.5 }; // a quarter of the stage's width in both
+const DEFAULT_SAMPLES = 64;
 
 // Returns the samples of the picture at rest: `chosen` by the user (0: none), else the larger of the usual
 // number and the scene's `own`. At most `most`.
-export const samples_at_rest = (chosen, own, most) => Math.min(most, chosen || Math.max(own, kUsualSamples));
+export const samplesAtRest = (chosen, own, most) => Math.min(most, chosen || Math.max(own, DEFAULT_SAMPLES));
 
 // Returns the sample counts after each pass of a picture, as the service renders them: each half of the next.
 export function passes(samples) {
@@ -18,9 +18,9 @@ export function passes(samples) {
 // Returns {part, samples} of pictures of a moving view, each cheaper than the one before. `part` is a factor
 // of each side. `own`: the scene's samples, 0 if unknown. Keeps a sample count or a fixed size that the user
 // has chosen.
-export function rungs({ samples, size, own }) {
+export function qualityLevels({ samples, size, own }) {
   const counts = samples ? [samples] : passes(Math.max(1, own)).reverse();
-  const parts = kParts.filter((part) => part >= kLeastPart[size]);
+  const parts = SIDE_FACTORS.filter((part) => part >= MIN_PART[size]);
   return [
     ...counts.map((count) => ({ part: 1, samples: count })),
     ...parts.map((part) => ({ part, samples: counts.at(-1) })),

@@ -1,9 +1,9 @@
 // Settings of a link that the service rejects.
 
-import { places_of } from "./problem.js";
-import { kDefaults } from "./state.js";
+import { placesOf } from "./problem.js";
+import { DEFAULTS } from "./link.js";
 
-const kSettings = {
+const SETTINGS = {
   technique: "technique",
   samples: "samples",
   width: "size",
@@ -11,23 +11,23 @@ const kSettings = {
   seconds: "seconds",
   error: "error",
 };
-const kWaysOut = {
-  technique: "Use the scene’s own technique",
+const RESET_LABELS = {
+  technique: "Use the scene’s technique",
   samples: "Choose samples automatically",
-  size: "Fit the window",
-  plan: "Choose automatically",
+  size: "Fit the image to the window",
+  plan: "Reset to automatic",
   seconds: "Remove the time limit",
   error: "Remove the error limit",
 };
 
 // Returns {settings, label} for the rejected settings: the defaults to set instead and that action in words.
 // Returns null if the error names none of them.
-export function refused_of(error, state) {
-  const of_plan = new URLSearchParams(state.plan);
-  const names = places_of(error)
+export function rejectedSettings(error, current) {
+  const ofPlan = new URLSearchParams(current.plan);
+  const names = placesOf(error)
     .map(({ pointer }) => pointer?.split("/").at(-1))
-    .map((key) => (of_plan.has(key) ? "plan" : kSettings[key]))
-    .filter((name) => name && state[name] !== kDefaults[name]);
+    .map((key) => (ofPlan.has(key) ? "plan" : SETTINGS[key]))
+    .filter((name) => name && current[name] !== DEFAULTS[name]);
   if (names.length === 0) return null;
-  return { settings: Object.fromEntries(names.map((name) => [name, kDefaults[name]])), label: kWaysOut[names[0]] };
+  return { settings: Object.fromEntries(names.map((name) => [name, DEFAULTS[name]])), label: RESET_LABELS[names[0]] };
 }

@@ -1,22 +1,22 @@
 // Scenes known to the page: samples by name, pasted scenes by id. The service may evict a scene. The page
 // posts it again if it has the text.
 
-import { get_json, get_text, post_scene } from "./api.js";
-import { floor_height } from "./floor.js";
+import { getJson, getText, postScene } from "./api.js";
+import { floorHeight } from "./floor.js";
 import { recall, remember } from "./storage.js";
 
-const kStorageKey = "orrery.scenes";
-const kLongestKept = 500_000; // characters; session storage is small
-const kMostKept = 8;
-const kUntitled = "Your scene";
+const STORAGE_KEY = "orrery.scenes";
+const MAX_STORED_LENGTH = 500_000; // characters; session storage is small
+const MAX_STORED_SCENES = 8;
+const UNTITLED = "Untitled scene";
 
-export function title_of(sample) {
+export function titleOf(sample) {
   if (sample.title && sample.title !== sample.name) return sample.title;
   return sample.name.charAt(0).toUpperCase() + sample.name.slice(1);
 }
 
 // Returns the address of a sample's thumbnail.
-export const thumbnail_of = ({ name }) => `scenes/thumbnails/${name}.webp`;
+export const thumbnailOf = ({ name }) => `scenes/thumbnails/${name}.webp`;
 
 // Library of scenes {ref, id, title, text, width, height, camera}, with {motion} if anything moves. `ref` is
 // the name in links.
@@ -26,7 +26,7 @@ export class SceneLibrary {
   #ids = new Map(); // id -> name of the sample
 
   constructor() {
-    for (const [id, text] of kept_texts()) this.#texts.set(id, text);
+    for (const [id, text] of storedTexts()) this.#texts.set(id, text);
   }
 
   sample(ref) {
@@ -36,56 +36,53 @@ export class SceneLibrary {
   // Opens the scene `ref`. Throws ApiError, with status 404 if neither page nor service has the id.
   async open(ref) {
     const sample = this.sample(ref);
-    const text = this.#texts.get(ref) ?? (sample ? await get_text(sample.href) : undefined);
+    const text = this.#texts.get(ref) ?? (sample ? await getText(sample.href) : undefined);
     if (text === undefined) return this.#fetch(ref);
     if (!sample) return this.post(text);
-    const info = await post_scene(text);
+    const info = await postScene(text);
     this.#texts.set(ref, text);
     this.#ids.set(info.id, ref);
-    return { ...info, ref, title: title_of(sample), text };
+    return { ...info, ref, title: titleOf(sample), text };
   }
 
   // Posts a text of the user. Throws ApiError with the places of its errors.
   async post(text) {
-    const info = await post_scene(text);
+    const info = await postScene(text);
     const name = this.#ids.get(info.id);
-    if (name) return { ...info, ref: name, title: title_of(this.sample(name)), text };
+    if (name) return { ...info, ref: name, title: titleOf(this.sample(name)), text };
     this.#keep(info.id, text);
-    return { ...info, ref: info.id, title: info.title || kUntitled, text };
+    return { ...info, ref: info.id, title: info.title || UNTITLED, text };
   }
 
   async #fetch(id) {
-    const text = pretty(await get_json(`v1/scenes/${id}`));
-    const info = await post_scene(text);
-    return { ...info, ref: id, title: info.title || kUntitled, text };
+    const text = pretty(await getJson(`v1/scenes/${id}`));
+    const info = await postScene(text);
+    return { ...info, ref: id, title: info.title || UNTITLED, text };
   }
 
   #keep(id, text) {
     this.#texts.set(id, text);
-    if (text.length > kLongestKept) return;
-    const kept = kept_texts().filter(([known]) => known !== id);
-    kept.push([id, text]);
-    remember(kStorageKey, kept.slice(-kMostKept));
+    if (text.length > MAX_STORED_LENGTH) return;
+    const stored = storedTexts().filter(([known]) => known !== id);
+    stored.push([id, text]);
+    remember(STORAGE_KEY, stored.slice(-MAX_STORED_SCENES));
   }
 }
 
 // Returns {samples, floor} from a scene's text: its sample count and the height of its floor.
-export function facts_of({ text, camera }) {
+export function factsOf({ text, camera }) {
   try {
     const scene = JSON.parse(text);
-    return { samples: scene.render?.samples ?? 1, floor: floor_height(scene, camera) };
+    return { samples: scene.render?.samples ?? 1, floor: floorHeight(scene, camera) };
   } catch {
     return { samples: 0, floor: -Infinity }; // the service accepts more than JSON.parse, such as a byte order mark
   }
 }
 
-const kept_texts = () => recall(kStorageKey) ?? [];
+const storedTexts = () => recall(STORAGE_KEY) ?? [];
 
 // Returns indented JSON with lists of numbers on one line.
 export function pretty(value) {
   const list = /\[\s+((?:-?[\d.]+(?:e[+-]?\d+)?,?\s+)+)\]/gi;
-  return JSON.stringify(value, null, 2).replace(
-    list,
-    (_, numbers) => `[${numbers.trim().replace(/\s+/g, " ")}]`,
-  );
+  return JSON.stringify(value, null, 2).replace(list, (_, numbers) => `[${numbers.trim().replace(/\s+/g, " ")}]`);
 }

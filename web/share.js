@@ -1,29 +1,29 @@
 // Download link and curl command of the current picture.
 
-import { access_token } from "./access.js";
-import { get_frame } from "./api.js";
-import { curl_command, file_name, frame_url } from "./urls.js";
+import { accessToken } from "./access.js";
+import { getFrame } from "./api.js";
+import { curlCommand, fileName, frameUrl } from "./urls.js";
 
-const kThanksMs = 2000;
+const FEEDBACK_MS = 2000;
 
 // Attaches the download link. `current()` returns {picture, name} of the stage, or null. With a token, which
 // a link cannot carry, fetches the picture first; `failed(error)` is called if that fails. Returns a function
 // that refreshes the link.
-export function attach_download(link, current, failed) {
+export function attachDownload(link, current, failed) {
   const refresh = () => {
     const now = current();
     if (!now) return link.removeAttribute("href");
     const { width, height, samples } = now.picture;
-    link.href = frame_url(now.picture);
-    link.download = file_name(now.name, now.picture);
+    link.href = frameUrl(now.picture);
+    link.download = fileName(now.name, now.picture);
     const count = samples > 0 ? `, ${samples} ${samples === 1 ? "sample" : "samples"}` : "";
-    link.title = `Download this view as PNG: ${width} × ${height}${count}`;
+    link.title = `Download this image as PNG: ${width} × ${height}${count}`;
   };
   for (const event of ["pointerdown", "pointerenter", "focus", "click", "contextmenu"]) {
     link.addEventListener(event, refresh);
   }
   link.addEventListener("click", (event) => {
-    if (!link.href || !access_token()) return;
+    if (!link.href || !accessToken()) return;
     event.preventDefault();
     save(link.href, link.download).catch(failed);
   });
@@ -32,31 +32,31 @@ export function attach_download(link, current, failed) {
 
 async function save(address, name) {
   const link = document.createElement("a");
-  link.href = URL.createObjectURL((await get_frame(address)).png);
+  link.href = URL.createObjectURL((await getFrame(address)).png);
   link.download = name;
   link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), kThanksMs);
+  setTimeout(() => URL.revokeObjectURL(link.href), FEEDBACK_MS);
 }
 
 // Attaches the curl button. Shows a prompt if the clipboard is unavailable (plain http from another host).
-export function attach_curl(button, current, announcement) {
+export function attachCurl(button, current, announce) {
   const label = button.querySelector(".label");
   const usual = label.textContent;
   button.addEventListener("click", async () => {
     const now = current();
     if (!now) return;
-    const command = curl_command(now.picture, now.name, document.baseURI, access_token());
+    const command = curlCommand(now.picture, now.name, document.baseURI, accessToken());
     try {
       await navigator.clipboard.writeText(command);
     } catch {
-      return prompt("This picture with curl", command);
+      return prompt("Copy this curl command:", command);
     }
     label.textContent = "Copied";
     button.classList.add("done");
-    announcement.textContent = "The curl command is on the clipboard.";
+    announce("The curl command was copied to the clipboard.");
     setTimeout(() => {
       label.textContent = usual;
       button.classList.remove("done");
-    }, kThanksMs);
+    }, FEEDBACK_MS);
   });
 }

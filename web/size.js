@@ -1,21 +1,17 @@
 // Picture sizes in pixels.
 
-const kStreamPixels = 1e6; // larger streams are bound by PNG encoding and decoding
+const STREAM_PIXELS = 1e6; // larger streams are bound by PNG encoding and decoding
 
-export const kModes = ["fit", "half", "scene", "1280x720", "1920x1080", "3840x2160"];
+export const MODES = ["fit", "half", "scene", "1280x720", "1920x1080", "3840x2160"];
 
-export function fixed_size(mode) {
+export function fixedSize(mode) {
   const match = /^(\d+)x(\d+)$/.exec(mode);
   return match ? { width: Number(match[1]), height: Number(match[2]) } : null;
 }
 
 // Shrinks a size to at most `side` per side and `pixels` in total. Keeps the aspect ratio.
 export function within(size, side, pixels) {
-  const factor = Math.min(
-    1,
-    side / Math.max(size.width, size.height),
-    Math.sqrt(pixels / (size.width * size.height)),
-  );
+  const factor = Math.min(1, side / Math.max(size.width, size.height), Math.sqrt(pixels / (size.width * size.height)));
   return {
     width: Math.max(1, Math.floor(size.width * factor + 1e-6)),
     height: Math.max(1, Math.floor(size.height * factor + 1e-6)),
@@ -25,17 +21,17 @@ export function within(size, side, pixels) {
 // Returns {width, height, fov, fills} for `purpose` "still", "stream" or "preview". `part` is a factor of
 // each side. `fov` is set if the box is narrower than the scene's own picture: its vertical angle grows so
 // that the sides stay in view.
-export function picture_size({ mode, purpose, box, pixel_ratio, scene, limits, part = 1 }) {
+export function pictureSize({ mode, purpose, box, pixelRatio, scene, limits, part = 1 }) {
   const own = { width: scene.width, height: scene.height };
   const fills = mode === "fit" || mode === "half";
-  let size = fixed_size(mode) ?? own;
+  let size = fixedSize(mode) ?? own;
   let fov;
   if (fills) {
-    const factor = pixel_ratio * (mode === "half" ? 0.5 : 1);
+    const factor = pixelRatio * (mode === "half" ? 0.5 : 1);
     size = fit(own, { width: box.width * factor, height: box.height * factor }, scene.camera);
-    fov = fov_for(own, size, scene.camera);
+    fov = fovFor(own, size, scene.camera);
   }
-  const most = purpose === "stream" && fills ? Math.min(kStreamPixels, limits.pixels) : limits.pixels;
+  const most = purpose === "stream" && fills ? Math.min(STREAM_PIXELS, limits.pixels) : limits.pixels;
   size = within(size, limits.side, most);
   const width = Math.ceil(size.width * part);
   const height = Math.ceil(size.height * part);
@@ -45,16 +41,16 @@ export function picture_size({ mode, purpose, box, pixel_ratio, scene, limits, p
 const aspect = (size) => size.width / size.height;
 
 // Orthographic views and panoramas have no angle to widen.
-const has_angle = (camera) => !["orthographic", "panorama"].includes(camera?.type);
+const hasAngle = (camera) => !["orthographic", "panorama"].includes(camera?.type);
 
 // Returns the box, or a part of it with the scene's aspect ratio if the view has no angle.
 function fit(own, box, camera) {
-  if (has_angle(camera) || aspect(box) >= aspect(own)) return box;
+  if (hasAngle(camera) || aspect(box) >= aspect(own)) return box;
   return { width: box.width, height: box.width / aspect(own) };
 }
 
-function fov_for(own, size, camera) {
-  if (!has_angle(camera) || aspect(size) >= aspect(own)) return undefined;
+function fovFor(own, size, camera) {
+  if (!hasAngle(camera) || aspect(size) >= aspect(own)) return undefined;
   const half = ((camera?.fov_degrees ?? 45) * Math.PI) / 360;
   return (Math.atan(Math.tan(half) * (aspect(own) / aspect(size))) * 360) / Math.PI;
 }

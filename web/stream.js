@@ -1,14 +1,14 @@
 // Reads application/x-orrery-frames: [4 bytes, big-endian: length of the header][header, JSON][PNG], repeated. The
 // header's `bytes` is the length of the PNG.
 
-import { broken, no_answer } from "./api.js";
+import { toApiError, connectionError } from "./api.js";
 
-export const kFrameType = "application/x-orrery-frames";
-const kLongestHeader = 64 * 1024;
-const kLongestPicture = 256 * 1024 * 1024;
+export const FRAME_TYPE = "application/x-orrery-frames";
+const MAX_HEADER_BYTES = 64 * 1024;
+const MAX_PICTURE_BYTES = 256 * 1024 * 1024;
 
 function check(sound) {
-  if (!sound) throw new Error("The stream is not made of frames");
+  if (!sound) throw new Error("The stream contains data that is not a frame");
 }
 
 // Incremental parser that returns complete frames.
@@ -16,7 +16,7 @@ export class FrameParser {
   #chunks = []; // unparsed bytes, in order
   #size = 0; // total length of #chunks
   #header = null; // header of the frame whose PNG is incomplete
-  #header_length = -1;
+  #headerLength = -1;
 
   // Returns the frames {header, png} that `chunk` completes. Throws Error if the bytes are malformed.
   push(chunk) {
@@ -27,29 +27,29 @@ export class FrameParser {
     return frames;
   }
 
-  get inside_frame() {
-    return this.#size > 0 || this.#header !== null || this.#header_length >= 0;
+  get insideFrame() {
+    return this.#size > 0 || this.#header !== null || this.#headerLength >= 0;
   }
 
   #next() {
-    if (this.#header_length < 0) {
+    if (this.#headerLength < 0) {
       const bytes = this.#take(4);
       if (!bytes) return null;
-      this.#header_length = new DataView(bytes.buffer, bytes.byteOffset).getUint32(0);
-      check(this.#header_length <= kLongestHeader);
+      this.#headerLength = new DataView(bytes.buffer, bytes.byteOffset).getUint32(0);
+      check(this.#headerLength <= MAX_HEADER_BYTES);
     }
     if (!this.#header) {
-      const bytes = this.#take(this.#header_length);
+      const bytes = this.#take(this.#headerLength);
       if (!bytes) return null;
       this.#header = JSON.parse(new TextDecoder().decode(bytes));
       const length = this.#header.bytes;
-      check(Number.isInteger(length) && length >= 0 && length <= kLongestPicture);
+      check(Number.isInteger(length) && length >= 0 && length <= MAX_PICTURE_BYTES);
     }
     const png = this.#take(this.#header.bytes);
     if (!png) return null;
     const frame = { header: this.#header, png };
     this.#header = null;
-    this.#header_length = -1;
+    this.#headerLength = -1;
     return frame;
   }
 
@@ -58,17 +58,17 @@ export class FrameParser {
     if (this.#size < count) return null;
     this.#size -= count;
     if (count === 0) return new Uint8Array(0);
-    if (this.#chunks[0].length >= count) return this.#take_from_first(count);
+    if (this.#chunks[0].length >= count) return this.#takeFromFirst(count);
     const bytes = new Uint8Array(count);
     for (let filled = 0; filled < count;) {
-      const part = this.#take_from_first(Math.min(this.#chunks[0].length, count - filled));
+      const part = this.#takeFromFirst(Math.min(this.#chunks[0].length, count - filled));
       bytes.set(part, filled);
       filled += part.length;
     }
     return bytes;
   }
 
-  #take_from_first(count) {
+  #takeFromFirst(count) {
     const first = this.#chunks[0];
     if (first.length === count) return this.#chunks.shift();
     this.#chunks[0] = first.subarray(count);
@@ -76,11 +76,19 @@ export class FrameParser {
   }
 }
 
+// Returns the header's figures under the names that the page uses.
+export const figuresOf = ({ render_ms: renderMs, encode_ms: encodeMs, azimuth_degrees: azimuth, ...figures }) => ({
+  ...figures,
+  renderMs,
+  encodeMs,
+  azimuth,
+});
+
 // Yields the frames of a response body as they arrive. Throws ApiError if the body breaks off.
-export async function* read_frames(body) {
+export async function* readFrames(body) {
   const parser = new FrameParser();
   for await (const chunk of chunks(body)) yield* parser.push(chunk);
-  if (parser.inside_frame) throw no_answer("The stream broke off inside a frame.");
+  if (parser.insideFrame) throw connectionError("The stream ended inside a frame.");
 }
 
 // Yields the chunks of a response body as they arrive.
@@ -101,6 +109,6 @@ async function read(reader) {
   try {
     return await reader.read();
   } catch (error) {
-    throw broken(error);
+    throw toApiError(error);
   }
 }

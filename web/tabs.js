@@ -1,7 +1,7 @@
 // Attaches a tab list: clicks and arrow keys select the visible panel. Returns a function that selects a tab
 // by id.
 
-export function attach_tabs(list) {
+export function attachTabs(list) {
   const tabs = [...list.querySelectorAll('[role="tab"]')];
   const select = (chosen) => {
     for (const tab of tabs) {

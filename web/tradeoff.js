@@ -1,17 +1,17 @@
 // Chart of speed against accuracy for the current scene, made on demand. A slider selects its stops, from
 // fastest to most accurate, and shows their pictures over the stage.
 
-import { bound_words, fields_of } from "./bound.js";
-import { at_view, bound_of, plan_of, stop_at, stops_of } from "./front.js";
-import { Hold } from "./hold.js";
-import { make_chart } from "./job.js";
-import { Prediction } from "./predicted.js";
-import { progress_text } from "./progress.js";
-import { frame_url, query_of } from "./urls.js";
+import { boundText, fieldsOf } from "./bound.js";
+import { atView, boundOf, planOf, stopAt, stopsOf } from "./pareto-front.js";
+import { HoldButton } from "./hold-button.js";
+import { makeChart } from "./job.js";
+import { BudgetPrediction } from "./budget-prediction.js";
+import { progressText } from "./progress.js";
+import { frameUrl, queryOf } from "./urls.js";
 
-const kExtent = { samples: 16, rounds: 3, width: 200 }; // chart size; takes some seconds, with paths a minute
-const kOffer = "The chart renders this view in many ways and shows how long each takes and how large its error is.";
-const kSlider = 1000; // steps of the range input, finer than the stops
+const CHART_EXTENT = { samples: 16, rounds: 3, width: 200 }; // chart size; takes some seconds, with paths a minute
+const OFFER = "The chart renders this view with different settings and shows the time and error of each.";
+const SLIDER_STEPS = 1000; // steps of the range input, finer than the stops
 
 export class Tradeoff {
   #parts;
@@ -22,7 +22,7 @@ export class Tradeoff {
   #chart = null;
   #stops = [];
   #at = -1; // index of the chosen stop, or -1
-  #was = null; // address of the picture that a held one replaced
+  #replaced = null; // address of the picture that a held one replaced
   #work = null; // AbortController of the chart being made
   #prediction;
   #predicted = ""; // prediction shown while there is no chart
@@ -30,29 +30,29 @@ export class Tradeoff {
 
   // `parts`: elements by name, and the `budgets` to predict. `on` has
   //   picture() -> the picture at rest without plan and budget, or null
-  //   within(budget) -> the same with that budget only
-  //   seen() -> address of the picture on the stage, or null
-  //   pause(), use(plan), chart(drawing, points), say(text)
+  //   withBudget(budget) -> the same with that budget only
+  //   shownAddress() -> address of the picture on the stage, or null
+  //   pause(), use(plan), chart(drawing, points), announce(text)
   constructor(parts, overlay, on) {
     this.#parts = parts;
     this.#overlay = overlay;
     this.#on = on;
     parts.make.addEventListener("click", () => (this.#work ? this.#work.abort() : this.#make()));
-    parts.slider.addEventListener("input", () => this.#slide(Number(parts.slider.value) / kSlider));
-    parts.slider.addEventListener("keydown", (event) => this.#key(event));
-    parts.slider.addEventListener("change", () => this.#settle());
-    parts.use.addEventListener("click", () => this.#at >= 0 && on.use(plan_of(this.#point)));
-    new Hold(parts.reference, "r", (held) => this.#hold(held, this.#reference()));
-    new Hold(parts.bound, "e", (held) => this.#hold(held, this.#bound()));
-    this.#prediction = new Prediction((words) => {
-      this.#predicted = words;
-      this.#offer();
+    parts.slider.addEventListener("input", () => this.#slide(Number(parts.slider.value) / SLIDER_STEPS));
+    parts.slider.addEventListener("keydown", (event) => this.#onKey(event));
+    parts.slider.addEventListener("change", () => this.#snapThumb());
+    parts.use.addEventListener("click", () => this.#at >= 0 && on.use(planOf(this.#point)));
+    new HoldButton(parts.reference, "r", (held) => this.#hold(held, this.#reference()));
+    new HoldButton(parts.bound, "e", (held) => this.#hold(held, this.#bound()));
+    this.#prediction = new BudgetPrediction((text) => {
+      this.#predicted = text;
+      this.#showOffer();
     });
-    this.#show_parts();
+    this.#showParts();
   }
 
-  // Drops the chart if `picture` has another scene or technique.
-  show(picture) {
+  // Drops the chart if `picture` has another scene or technique. null: no scene is shown.
+  setPicture(picture) {
     const kind = picture ? `${picture.id} ${picture.technique}` : "";
     if (kind === this.#kind) return;
     this.#kind = kind;
@@ -61,24 +61,22 @@ export class Tradeoff {
   }
 
   // Predicts the budgets of the picture at rest while there is no chart.
-  rest() {
-    if (!this.#chart && !this.#work) this.#prediction.of(this.#parts.budgets.map(this.#on.within));
+  predictBudgets() {
+    if (!this.#chart && !this.#work) this.#prediction.predict(this.#parts.budgets.map(this.#on.withBudget));
   }
 
-  // Cancels the prediction.
-  stale() {
-    this.#prediction.leave();
+  cancelPrediction() {
+    this.#prediction.cancel();
   }
 
-  // Hides the overlay.
-  leave() {
+  hideOverlay() {
     this.#overlay.hide();
   }
 
   // Chooses the stop of the chart's point `index`, if it is a stop.
   choose(index) {
     const at = this.#stops.findIndex(({ point }) => point === this.#chart.points[index]);
-    if (at >= 0) this.#go(at);
+    if (at >= 0) this.#select(at);
   }
 
   get #point() {
@@ -92,37 +90,38 @@ export class Tradeoff {
     const { progress, part } = this.#parts;
     this.#work = new AbortController();
     const { signal } = this.#work;
-    this.#show_parts();
-    const tell = (figures) => {
+    this.#showParts();
+    const onProgress = (figures) => {
       progress.value = figures.part ?? 0;
-      part.textContent = progress_text(figures);
+      part.textContent = progressText(figures);
     };
-    tell({});
+    onProgress({});
     try {
-      const made = await make_chart(picture, kExtent, signal, tell);
+      const made = await makeChart(picture, CHART_EXTENT, signal, onProgress);
       signal.throwIfAborted();
-      if (made) this.#take(made, picture);
-      else this.#say("This service makes no charts.", true);
+      if (made) this.#showChart(made, picture);
+      else this.#showNote("This service does not offer charts.", true);
     } catch (error) {
-      if (!signal.aborted) this.#say(`No chart: ${error.title ?? error.message}. ${error.detail ?? ""}`, true);
+      if (!signal.aborted)
+        this.#showNote(`The chart failed: ${error.title ?? error.message}. ${error.detail ?? ""}`, true);
     } finally {
       this.#work = null;
-      this.#show_parts();
+      this.#showParts();
     }
   }
 
-  #take({ chart, drawing }, picture) {
+  #showChart({ chart, drawing }, picture) {
     this.#drop();
     this.#chart = chart;
-    this.#view = view_of(picture);
-    this.#stops = stops_of(chart);
+    this.#view = viewOf(picture);
+    this.#stops = stopsOf(chart);
     this.#parts.ticks.replaceChildren(
-      ...this.#stops.map(({ place }) => new Option("", String(Math.round(place * kSlider)))),
+      ...this.#stops.map(({ place }) => new Option("", String(Math.round(place * SLIDER_STEPS)))),
     );
     const selectable = this.#stops.map(({ point, line }) => ({ index: chart.points.indexOf(point), line }));
     this.#on.chart(drawing, selectable);
-    this.#show_parts();
-    this.#go(this.#stops.length - 1);
+    this.#showParts();
+    this.#select(this.#stops.length - 1);
     // Keeps the focus if the user has moved it elsewhere.
     if ([this.#parts.make, document.body].includes(document.activeElement)) this.#parts.slider.focus();
   }
@@ -133,30 +132,30 @@ export class Tradeoff {
     this.#chart = null;
     this.#stops = [];
     this.#at = -1;
-    this.#say("");
-    this.#show_parts();
+    this.#showNote("");
+    this.#showParts();
   }
 
-  #show_parts() {
+  #showParts() {
     const { make, stops, progress, part, reference } = this.#parts;
     make.hidden = Boolean(this.#chart);
-    make.textContent = this.#work ? "Cancel the chart" : "Chart speed against accuracy";
+    make.textContent = this.#work ? "Cancel chart" : "Make speed and accuracy chart";
     progress.hidden = part.hidden = !this.#work;
     stops.hidden = reference.hidden = !this.#chart;
   }
 
   #slide(place) {
-    const at = stop_at(this.#stops, place);
+    const at = stopAt(this.#stops, place);
     if (at === this.#at && this.#overlay.shown) return;
-    this.#go(at, place);
+    this.#select(at, place);
   }
 
   // Moves the thumb to its stop.
-  #settle() {
-    if (this.#at >= 0) this.#parts.slider.value = Math.round(this.#stops[this.#at].place * kSlider);
+  #snapThumb() {
+    if (this.#at >= 0) this.#parts.slider.value = Math.round(this.#stops[this.#at].place * SLIDER_STEPS);
   }
 
-  #key(event) {
+  #onKey(event) {
     const last = this.#stops.length - 1;
     const to = {
       ArrowLeft: this.#at - 1,
@@ -170,92 +169,92 @@ export class Tradeoff {
     }[event.key];
     if (to === undefined || event.altKey || event.ctrlKey || event.metaKey) return;
     event.preventDefault();
-    this.#go(Math.min(last, Math.max(0, to)));
+    this.#select(Math.min(last, Math.max(0, to)));
   }
 
-  #go(at, place) {
+  #select(at, place) {
     this.#at = at;
     const { line } = this.#stops[at];
-    const { slider, line: told } = this.#parts;
-    if (place === undefined) this.#settle();
+    const { slider, line: text } = this.#parts;
+    if (place === undefined) this.#snapThumb();
     slider.ariaValueText = line;
-    told.textContent = told.title = line;
+    text.textContent = text.title = line;
     this.#on.pause();
-    const elsewhere = this.#elsewhere ? "Measured in another view. " : "";
-    this.#say(`${elsewhere}The picture alone tells: ${bound_words(fields_of(this.#point.certificate))}`);
-    this.#see(this.#address());
-    this.#fetch_all();
+    const elsewhere = this.#isOtherView ? "Measured for another view. " : "";
+    this.#showNote(`${elsewhere}Without a reference: ${boundText(fieldsOf(this.#point.certificate))}`);
+    this.#showPicture(this.#address());
+    this.#fetchAll();
   }
 
-  get #elsewhere() {
-    return this.#view !== view_of(this.#on.picture());
+  get #isOtherView() {
+    return this.#view !== viewOf(this.#on.picture());
   }
 
   // Returns the address of a point's picture in the current view.
-  #in_view(address) {
-    return this.#elsewhere ? at_view(address, query_of(this.#on.picture())) : address;
+  #atCurrentView(address) {
+    return this.#isOtherView ? atView(address, queryOf(this.#on.picture())) : address;
   }
 
   #address() {
-    return this.#at >= 0 ? this.#in_view(this.#point.picture) : null;
+    return this.#at >= 0 ? this.#atCurrentView(this.#point.picture) : null;
   }
 
   #reference() {
-    return this.#chart && this.#in_view(this.#chart.reference.picture);
+    return this.#chart && this.#atCurrentView(this.#chart.reference.picture);
   }
 
   // Returns the error view of the visible stop, else of the picture on the stage.
   #bound() {
-    const address = (this.#overlay.shown && this.#address()) || this.#on.seen();
-    return address && bound_of(address);
+    const address = (this.#overlay.shown && this.#address()) || this.#on.shownAddress();
+    return address && boundOf(address);
   }
 
-  #fetch_all() {
+  #fetchAll() {
     this.#fetching.abort();
     this.#fetching = new AbortController();
     const away = (at) => Math.abs(at - this.#at);
     const near = this.#stops.map((_, at) => at).sort((a, b) => away(a) - away(b));
-    const addresses = near.map((at) => this.#in_view(this.#stops[at].point.picture));
+    const addresses = near.map((at) => this.#atCurrentView(this.#stops[at].point.picture));
     this.#overlay.prefetch(addresses, this.#fetching.signal);
   }
 
-  async #see(address) {
+  async #showPicture(address) {
     try {
       await this.#overlay.show(address);
     } catch (error) {
-      this.#say(`The picture cannot be shown: ${error.title ?? error.message}. ${error.detail ?? ""}`, true);
+      this.#showNote(`Cannot show the image: ${error.title ?? error.message}. ${error.detail ?? ""}`, true);
     }
   }
 
   // Shows the picture at `address` while held, then the former one.
   #hold(held, address) {
     if (!held) {
-      if (this.#was) this.#see(this.#was);
+      if (this.#replaced) this.#showPicture(this.#replaced);
       else this.#overlay.hide();
     } else if (!address) {
-      this.#on.say("There is nothing to compare with before a chart is made.");
+      this.#on.announce("Make a chart first to get a reference image.");
     } else {
-      this.#was = this.#overlay.shown ? this.#address() : null;
+      this.#replaced = this.#overlay.shown ? this.#address() : null;
       this.#on.pause();
-      this.#see(address);
+      this.#showPicture(address);
     }
   }
 
-  #say(text, alarms = false) {
+  #showNote(text, isError = false) {
     const { note } = this.#parts;
     note.textContent = text;
-    note.classList.toggle("missed", alarms);
-    this.#offer();
+    note.classList.toggle("missed", isError);
+    this.#showOffer();
   }
 
-  #offer() {
+  #showOffer() {
     const { line } = this.#parts;
-    if (!this.#chart) line.textContent = line.title = this.#predicted || kOffer;
+    if (!this.#chart) line.textContent = line.title = this.#predicted || OFFER;
   }
 }
 
 // Returns the view of a picture as an address, for comparison.
-function view_of(picture) {
+function viewOf(picture) {
   const { width, height, technique, samples, more, ...view } = picture;
-  return frame_url(view);
+  return frameUrl(view);
 }

@@ -1,10 +1,10 @@
 // Addresses of pictures, relative so that the page works below any path. Numbers are rounded, so equal views
 // have equal addresses and hit the browser's cache.
 
-// Returns the query of a picture {id, azimuth, elevation, distance, pan, width, height}, with {moves, time}
+// Returns the query of a picture {id, azimuth, elevation, distance, pan, width, height}, with {isAnimated, time}
 // in a moving scene. Optional: {fov, technique, samples}, `more` options as a query, budgets {seconds,
 // error}. `location`: address that reproduces a picture made to a budget.
-export function query_of(picture) {
+export function queryOf(picture) {
   const query = new URLSearchParams({
     azimuth: round(picture.azimuth, 2),
     elevation: round(picture.elevation, 2),
@@ -12,9 +12,9 @@ export function query_of(picture) {
     width: picture.width,
     height: picture.height,
   });
-  const pan = pan_text(picture.pan);
+  const pan = panText(picture.pan);
   if (pan) query.set("pan", pan);
-  if (picture.moves) query.set("time", round(picture.time, 3));
+  if (picture.isAnimated) query.set("time", round(picture.time, 3));
   if (picture.fov) query.set("fov", round(picture.fov, 3));
   if (picture.technique) query.set("technique", picture.technique);
   if (picture.samples) query.set("samples", picture.samples);
@@ -24,7 +24,7 @@ export function query_of(picture) {
 }
 
 // Formats a pan with six significant digits, for scenes of any scale. Returns "" without a pan.
-export function pan_text(pan) {
+export function panText(pan) {
   return pan?.some(Boolean) ? pan.map((metres) => Number(metres.toPrecision(6)) + 0).join() : "";
 }
 
@@ -32,30 +32,33 @@ export function round(value, digits) {
   return Number(value.toFixed(digits)) + 0; // + 0: no minus zero
 }
 
-export function frame_url(picture) {
-  return picture.location ?? `v1/scenes/${picture.id}/frame.png?${query_of(picture)}`;
+export function frameUrl(picture) {
+  return picture.location ?? `v1/scenes/${picture.id}/frame.png?${queryOf(picture)}`;
 }
 
 // Returns the address of the picture's refinement in passes.
-export function refinement_url(picture) {
-  return `v1/scenes/${picture.id}/refinement?${query_of(picture)}`;
+export function refinementUrl(picture) {
+  return `v1/scenes/${picture.id}/refinement?${queryOf(picture)}`;
 }
 
-// Returns the address of an orbit. `time_step`: seconds of the scene's motion per frame, 0 if nothing moves.
-export function orbit_url(picture, { frames, fps, step, time_step }) {
-  const query = query_of(picture);
+// Returns the address of an orbit. `timeStep`: seconds of the scene's motion per frame, 0 if nothing moves.
+export function orbitUrl(picture, { frames, fps, step, timeStep }) {
+  const query = queryOf(picture);
   query.set("frames", frames);
   query.set("fps", fps);
   query.set("step", round(step, 5));
-  if (time_step) query.set("time_step", round(time_step, 5));
+  if (timeStep) query.set("time_step", round(timeStep, 5));
   return `v1/scenes/${picture.id}/orbit?${query}`;
 }
 
 // Returns the body of POST v1/jobs for a picture.
-export function job_body(picture) {
-  const { azimuth, elevation, distance, fov, width, height, samples, time } = numbers_of(query_of(picture));
-  const { technique, pan } = Object.fromEntries(query_of(picture));
-  const more = [...new URLSearchParams(picture.more)].map(([key, text]) => [key, text === "" || isNaN(text) ? text : Number(text)]);
+export function jobBody(picture) {
+  const { azimuth, elevation, distance, fov, width, height, samples, time } = numbersOf(queryOf(picture));
+  const { technique, pan } = Object.fromEntries(queryOf(picture));
+  const more = [...new URLSearchParams(picture.more)].map(([key, text]) => [
+    key,
+    text === "" || isNaN(text) ? text : Number(text),
+  ]);
   return {
     scene_id: picture.id,
     camera: {
@@ -71,21 +74,21 @@ export function job_body(picture) {
 }
 
 // Returns the body of POST v1/scenes/{id}/charts. `extent`: {samples, rounds, width}.
-export function chart_body(picture, extent) {
-  const { camera, image, render } = job_body({ ...picture, samples: undefined, more: undefined });
+export function chartBody(picture, extent) {
+  const { camera, image, render } = jobBody({ ...picture, samples: undefined, more: undefined });
   return { camera, image, render: { ...render, samples: undefined }, chart: extent };
 }
 
-const numbers_of = (query) => Object.fromEntries([...query].map(([key, text]) => [key, Number(text)]));
+const numbersOf = (query) => Object.fromEntries([...query].map(([key, text]) => [key, Number(text)]));
 
-export function file_name(name, view) {
+export function fileName(name, view) {
   const plain = name.replace(/[^\w-]+/g, "-").slice(0, 40);
   return `${plain}-${Math.round(view.azimuth)}-${Math.round(view.elevation)}.png`;
 }
 
 // Returns a curl command. With `token`, the command reads the token from the environment.
-export function curl_command(picture, name, base, token = "") {
-  const address = new URL(frame_url(picture), base).href.replaceAll("'", "%27");
+export function curlCommand(picture, name, base, token = "") {
+  const address = new URL(frameUrl(picture), base).href.replaceAll("'", "%27");
   const access = token ? '-H "Authorization: Bearer $ORRERY_TOKEN" ' : "";
-  return `curl -fo ${file_name(name, picture)} ${access}'${address}'`;
+  return `curl -fo ${fileName(name, picture)} ${access}'${address}'`;
 }

@@ -1,8 +1,9 @@
 // Stage: draws pictures on its canvas, and a thumbnail before the first picture of a scene.
 
 import { ApiError } from "./api.js";
+import { element } from "./problem.js";
 
-const kFadeMs = 180;
+const FADE_MS = 180;
 
 export class View {
   #canvas;
@@ -11,10 +12,10 @@ export class View {
   #context;
   #newest = null; // bitmap drawn last or fading in
 
-  // `poster`: the <img> of thumbnails.
-  constructor(stage, canvas, poster) {
+  constructor(stage, canvas) {
     this.#stage = stage;
-    this.#poster = poster;
+    this.#poster = Object.assign(element("img"), { id: "poster", alt: "", hidden: true });
+    stage.prepend(this.#poster);
     this.#canvas = canvas;
     this.#context = canvas.getContext("2d", { alpha: false });
   }
@@ -41,7 +42,7 @@ export class View {
     canvas.hidden = false;
     this.#poster.hidden = true;
     this.#newest = bitmap;
-    this.#blend(bitmap, 0, performance.now(), fades ? kFadeMs : 0);
+    this.#blend(bitmap, 0, performance.now(), fades ? FADE_MS : 0);
   }
 
   // Shows only the thumbnail at this address ("": none) until a picture is drawn.
@@ -72,6 +73,6 @@ export async function decode(png) {
     return await createImageBitmap(blob);
   } catch {
     const detail = "The browser could not decode it.";
-    throw new ApiError({ status: 200, title: "This picture cannot be shown", detail });
+    throw new ApiError({ status: 200, title: "Cannot show the image", detail });
   }
 }

@@ -5,14 +5,28 @@ import { spawnSync } from "node:child_process";
 import { kOrrery } from "./command.mjs";
 import { median, show_progress } from "./measure.mjs";
 
-const kScenes = ["paper", "glass", "mirrors", "orrery", "material-rough", "material-glass", "light-many", "sphereflake-2",
-                 "cornell-box", "technique-distributed"];
-const kErrors = [0.1, 0.07, 0.05, 0.035, 0.025, 0.018], kSize = 160;
+const kScenes = [
+  "paper",
+  "glass",
+  "mirrors",
+  "orrery",
+  "material-rough",
+  "material-glass",
+  "light-many",
+  "sphereflake-2",
+  "cornell-box",
+  "technique-distributed",
+];
+const kErrors = [0.1, 0.07, 0.05, 0.035, 0.025, 0.018],
+  kSize = 160;
 const kSamples = [2, 4, 6, 8, 10, 12, 16, 20, 24, 32, 48, 64, 96, 128];
 const kContributions = [0.04, 0.01, 0.0025, 6e-4, 4e-5]; // minimum contributions of rays, for ray trees
 
 function render(scene, size, options) {
-  const words = Object.entries({ width: size, height: size, ...options }).flatMap(([name, value]) => [`--${name}`, String(value)]);
+  const words = Object.entries({ width: size, height: size, ...options }).flatMap(([name, value]) => [
+    `--${name}`,
+    String(value),
+  ]);
   const done = spawnSync(kOrrery, ["render", `scenes/${scene}.json`, "--stats=json", ...words], { encoding: "utf8" });
   if (done.status !== 0) throw new Error(`${scene}: ${done.stderr.trim()}`);
   return JSON.parse(done.stdout);
@@ -20,11 +34,16 @@ function render(scene, size, options) {
 
 // Returns {rays, bound} of all settings, up to the first sample count that meets the smallest error.
 function grid_of(scene, size) {
-  const is_tree = render(scene, 32, {}).technique === "whitted", cells = [];
+  const is_tree = render(scene, 32, {}).technique === "whitted",
+    cells = [];
   for (const samples of kSamples) {
     for (const contribution of is_tree ? kContributions : [0]) {
       const { rays, certificate } = render(scene, size, {
-        samples, space: "display", precision: "double", "max-depth": 32, "min-contribution": contribution,
+        samples,
+        space: "display",
+        precision: "double",
+        "max-depth": 32,
+        "min-contribution": contribution,
       });
       cells.push({ rays: rays.total, bound: certificate.total.rms ?? Infinity });
     }
@@ -50,12 +69,16 @@ export const kBudgets = {
         const least = Math.min(...cells.filter(({ bound }) => bound <= error).map((cell) => cell.rays));
         const ratio = budget.met && isFinite(least) ? rays.total / least : null;
         if (ratio) ratios.push(ratio);
-        console.log(line([scene, error, budget.met, rays.total, isFinite(least) ? least : "-", ratio?.toFixed(2) ?? "-"]));
+        console.log(
+          line([scene, error, budget.met, rays.total, isFinite(least) ? least : "-", ratio?.toFixed(2) ?? "-"]),
+        );
       }
     }
     show_progress("");
-    console.log(`${ratios.length} of ${kScenes.length * kErrors.length} met: median ${median(ratios).toFixed(2)}, ` +
-                `most ${Math.max(...ratios).toFixed(2)}`);
+    console.log(
+      `${ratios.length} of ${kScenes.length * kErrors.length} met: median ${median(ratios).toFixed(2)}, ` +
+        `most ${Math.max(...ratios).toFixed(2)}`,
+    );
     return [];
   },
 };

@@ -16,7 +16,10 @@ export const kCancel = {
   async run() {
     const done = spawnSync(kProgram, [String(kTimes)], { encoding: "utf8", stdio: ["ignore", "pipe", "inherit"] });
     if (done.status !== 0) throw new Error(`${kProgram} ended with ${done.status}`);
-    const rows = done.stdout.trim().split("\n").map((line) => JSON.parse(line));
+    const rows = done.stdout
+      .trim()
+      .split("\n")
+      .map((line) => JSON.parse(line));
     console.log("\n" + cells(["stage", "whole ms", "cancelled", "done before", "p50 ms", "most ms"]));
     for (const r of rows.sort((a, b) => b.most_ms - a.most_ms)) {
       const [whole, p50, most] = [r.whole_ms, r.p50_ms, r.most_ms].map((value) => value.toFixed(1));

@@ -1,6 +1,7 @@
 // SVG charts: panels with scatter and line plots.
 
-const kPanel = { width: 300, height: 250 }, kMargin = { left: 52, right: 14, top: 34, bottom: 42 };
+const kPanel = { width: 300, height: 250 },
+  kMargin = { left: 52, right: 14, top: 34, bottom: 42 };
 const kColors = ["#0b6e99", "#d9730d", "#0f7b6c", "#ad1a72", "#6940a5", "#8a6d1d"];
 
 const escape = (text) => String(text).replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/"/g, "&quot;");
@@ -16,20 +17,23 @@ function text(x, y, words, { size = 11, anchor = "middle", color = "#333", weigh
 
 // Returns the mark of series i: a dot, or a square once all colours are used.
 function mark(i, x, y, title) {
-  const color = kColors[i % kColors.length], inside = title ? `<title>${escape(title)}</title>` : "";
+  const color = kColors[i % kColors.length],
+    inside = title ? `<title>${escape(title)}</title>` : "";
   if (i < kColors.length) return `<circle cx="${x}" cy="${y}" r="4.5" fill="${color}">${inside}</circle>`;
   return `<rect x="${round(x - 4.5)}" y="${round(y - 4.5)}" width="9" height="9" fill="${color}">${inside}</rect>`;
 }
 
 // Returns a logarithmic axis between the powers of ten around the values.
 function log_axis(values, from, to) {
-  const lo = Math.floor(Math.log10(Math.min(...values)) - 1e-9), hi = Math.ceil(Math.log10(Math.max(...values)) + 1e-9);
+  const lo = Math.floor(Math.log10(Math.min(...values)) - 1e-9),
+    hi = Math.ceil(Math.log10(Math.max(...values)) + 1e-9);
   const at = (value) => from + ((Math.log10(value) - lo) / (hi - lo)) * (to - from);
   const ticks = Array.from({ length: hi - lo + 1 }, (_, i) => 10 ** (lo + i));
   return { at, ticks };
 }
 function linear_axis(values, from, to) {
-  const most = Math.max(...values), step = 10 ** Math.floor(Math.log10(most));
+  const most = Math.max(...values),
+    step = 10 ** Math.floor(Math.log10(most));
   const tick = [0.2, 0.5, 1, 2].map((f) => f * step).find((t) => most / t <= 6) ?? 2 * step;
   const top = Math.ceil(most / tick) * tick;
   const at = (value) => from + (value / top) * (to - from);
@@ -45,12 +49,22 @@ const tick_name = (value) => {
 // y_axis: "log" or "linear"}.
 function panel({ title, x, y, series, y_axis = "log" }, left, top) {
   const inner = {
-    x0: left + kMargin.left, x1: left + kPanel.width - kMargin.right,
-    y0: top + kPanel.height - kMargin.bottom, y1: top + kMargin.top,
+    x0: left + kMargin.left,
+    x1: left + kPanel.width - kMargin.right,
+    y0: top + kPanel.height - kMargin.bottom,
+    y1: top + kMargin.top,
   };
   const points = series.flatMap((s) => s.points);
-  const across = log_axis(points.map((p) => p.x), inner.x0, inner.x1);
-  const up = (y_axis === "log" ? log_axis : linear_axis)(points.map((p) => p.y), inner.y0, inner.y1);
+  const across = log_axis(
+    points.map((p) => p.x),
+    inner.x0,
+    inner.x1,
+  );
+  const up = (y_axis === "log" ? log_axis : linear_axis)(
+    points.map((p) => p.y),
+    inner.y0,
+    inner.y1,
+  );
   const parts = [text((inner.x0 + inner.x1) / 2, top + 18, title, { size: 13, weight: "bold" })];
   for (const tick of across.ticks) {
     const at = round(across.at(tick));
@@ -69,7 +83,8 @@ function panel({ title, x, y, series, y_axis = "log" }, left, top) {
 }
 
 function draw_series({ points, line }, i, across, up) {
-  const color = kColors[i % kColors.length], parts = [];
+  const color = kColors[i % kColors.length],
+    parts = [];
   const place = (p) => [round(across.at(p.x)), round(up.at(p.y))];
   if (line) {
     const path = points.map((p) => place(p).join(",")).join(" ");
@@ -85,9 +100,11 @@ function draw_series({ points, line }, i, across, up) {
 
 // Returns a chart: panels in rows of `columns`, and a legend of `names` in the colours of the series.
 export function chart({ title, note, panels, columns, names }) {
-  const rows = Math.ceil(panels.length / columns), wide = columns * kPanel.width;
+  const rows = Math.ceil(panels.length / columns),
+    wide = columns * kPanel.width;
   const legend_rows = Math.ceil(names.length / Math.max(1, Math.floor(wide / 140)));
-  const top = 46, height = top + rows * kPanel.height + 24 * legend_rows + 34;
+  const top = 46,
+    height = top + rows * kPanel.height + 24 * legend_rows + 34;
   const parts = [text(wide / 2, 26, title, { size: 17, weight: "bold" })];
   panels.forEach((one, i) => {
     parts.push(...panel(one, (i % columns) * kPanel.width, top + Math.floor(i / columns) * kPanel.height));

@@ -16,10 +16,16 @@ const kScenes = [
   { name: "stones", title: "glass, metal and chalk under a picture of a sky", file: "scenes/image-sky/stones.json" },
 ];
 const kBounces = 8;
-const kSize = 512, kPairs = 2, kLeastSamples = 4, kMostSamples = 256;
+const kSize = 512,
+  kPairs = 2,
+  kLeastSamples = 4,
+  kMostSamples = 256;
 const kBlocks = [1, 4, 32]; // sides in pixels; blocks reveal smoothed or spread errors
-const kTargets = [0.02, 0.01, 0.005], kReach = 3, kAim = 6; // root mean squared errors of a pixel
-const kRenderers = ["ours", "theirs"], kNames = { ours: "orrery", theirs: "Cycles" };
+const kTargets = [0.02, 0.01, 0.005],
+  kReach = 3,
+  kAim = 6; // root mean squared errors of a pixel
+const kRenderers = ["ours", "theirs"],
+  kNames = { ours: "orrery", theirs: "Cycles" };
 const kDefaultsSeeds = 1000; // seed offset, so that the noise is independent of the fair pictures
 
 const mean = (values) => values.reduce((sum, v) => sum + v, 0) / values.length;
@@ -29,7 +35,12 @@ const squared_error = (a, b) => mean_product(a, b, a, b) / 2;
 // Renders two pictures with each renderer, in the order ABBA.
 async function two_of_each(renderers, order, seeds) {
   const runs = { ours: [], theirs: [] };
-  for (const [side, i] of [["ours", 0], ["theirs", 0], ["theirs", 1], ["ours", 1]])
+  for (const [side, i] of [
+    ["ours", 0],
+    ["theirs", 0],
+    ["theirs", 1],
+    ["ours", 1],
+  ])
     runs[side].push(await renderers[side]({ ...order, seed: seeds[i] }));
   return runs;
 }
@@ -44,7 +55,8 @@ function summary(samples, runs) {
 // Extrapolates the CPU time from 1 sample and the largest count to 0 samples. Returns it, and the rows of
 // more than one sample without it.
 function without_setup([one, ...rows]) {
-  const most = rows.at(-1), a_sample = (most.cpu_s - one.cpu_s) / (most.samples - one.samples);
+  const most = rows.at(-1),
+    a_sample = (most.cpu_s - one.cpu_s) / (most.samples - one.samples);
   const setup_s = one.cpu_s - a_sample;
   return { setup_s, rows: rows.map((row) => ({ ...row, cpu_s: row.cpu_s - setup_s })) };
 }
@@ -52,7 +64,8 @@ function without_setup([one, ...rows]) {
 // Returns {setup_s, rows, pictures} for each renderer. The pictures are those of the largest sample count.
 async function measure_pair(renderers, counts, pair) {
   const seeds = [2 * pair + 1, 2 * pair + 2];
-  const rows = { ours: [], theirs: [] }, pictures = {};
+  const rows = { ours: [], theirs: [] },
+    pictures = {};
   for (const samples of [1, ...counts]) {
     show_progress(`cycles: pair ${pair + 1}, ${samples} samples`);
     const runs = await two_of_each(renderers, { samples, bounces: kBounces }, seeds);
@@ -61,7 +74,9 @@ async function measure_pair(renderers, counts, pair) {
       pictures[side] = runs[side].map(({ picture }) => picture);
     }
   }
-  return Object.fromEntries(kRenderers.map((side) => [side, { ...without_setup(rows[side]), pictures: pictures[side] }]));
+  return Object.fromEntries(
+    kRenderers.map((side) => [side, { ...without_setup(rows[side]), pictures: pictures[side] }]),
+  );
 }
 
 async function measure_defaults(renderers, samples, pair, setup_s) {
@@ -75,8 +90,10 @@ async function measure_defaults(renderers, samples, pair, setup_s) {
 
 // Fits the line log error = log a + b log seconds by least squares. Returns {slope: b, seconds(error)}.
 function fit(rows, block) {
-  const x = rows.map(({ cpu_s }) => Math.log(cpu_s)), y = rows.map((row) => Math.log(row.squared_errors[block]) / 2);
-  const mean_x = mean(x), mean_y = mean(y);
+  const x = rows.map(({ cpu_s }) => Math.log(cpu_s)),
+    y = rows.map((row) => Math.log(row.squared_errors[block]) / 2);
+  const mean_x = mean(x),
+    mean_y = mean(y);
   const slope = mean(x.map((v, i) => (v - mean_x) * (y[i] - mean_y))) / mean(x.map((v) => (v - mean_x) ** 2));
   return { slope, seconds: (error) => Math.exp(mean_x + (Math.log(error) - mean_y) / slope) };
 }
@@ -115,7 +132,8 @@ function print_errors(rows, pairs) {
 // Compares the CPU seconds to the error `target / side` in blocks of that side. Independent pixels reach it
 // at the same time as `target`.
 function ratio_row(scene, pairs, rows, block, target) {
-  const side = kBlocks[block], error = target / side;
+  const side = kBlocks[block],
+    error = target / side;
   const seconds = Object.fromEntries(
     kRenderers.map((one) => [one, pairs.map((pair) => fit(pair[one].rows, block).seconds(error))]),
   );
@@ -170,11 +188,16 @@ function draw(file, scene, rows, size) {
   }));
   const title = `${scene.title[0].toUpperCase()}${scene.title.slice(1)}: error against CPU time`;
   const note = `${size}x${size}, ${kBounces} bounces, box filter, nothing clamped; further left and down is better`;
-  writeFileSync(file, chart({ title, note, panels, columns: panels.length, names: kRenderers.map((one) => kNames[one]) }));
+  writeFileSync(
+    file,
+    chart({ title, note, panels, columns: panels.length, names: kRenderers.map((one) => kNames[one]) }),
+  );
 }
 
 async function measure(scene, pair_count, counts, size) {
-  const renderers = start_renderers(scene.file, size), pairs = [], defaults = [];
+  const renderers = start_renderers(scene.file, size),
+    pairs = [],
+    defaults = [];
   try {
     await two_of_each(renderers, { samples: 1, bounces: kBounces }, [1, 2]); // warm-up
     for (let pair = 0; pair < pair_count; ++pair) {
@@ -200,7 +223,9 @@ async function compare_errors(scene, { seeds = kPairs, samples = kMostSamples, s
   if (size % Math.max(...kBlocks) !== 0) throw new Error(`--size expects a multiple of ${Math.max(...kBlocks)}`);
   const { pairs, defaults } = await measure(scene, seeds, counts, size);
   const rows = { ours: pooled(pairs, "ours"), theirs: pooled(pairs, "theirs") };
-  console.log(`\n${scene.title}, ${size}x${size}, ${kBounces} bounces, two threads: root mean squared error of linear R,`);
+  console.log(
+    `\n${scene.title}, ${size}x${size}, ${kBounces} bounces, two threads: root mean squared error of linear R,`,
+  );
   console.log(`G and B, by pixel and by means of blocks; pairs of seeds: ${pairs.length}`);
   print_errors(rows, pairs);
   const ratios = kBlocks.flatMap((_, block) => kTargets.map((target) => ratio_row(scene, pairs, rows, block, target)));

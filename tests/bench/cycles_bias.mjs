@@ -10,7 +10,8 @@ const signed_root = (x) => Math.sign(x) * Math.sqrt(Math.abs(x));
 export function channel_statistics(pictures) {
   const found = pictures.map(channel_means);
   return kChannels.map((_, c) => {
-    const values = found.map((means) => means[c]), middle = mean(values);
+    const values = found.map((means) => means[c]),
+      middle = mean(values);
     const variance = values.reduce((sum, v) => sum + (v - middle) ** 2, 0) / (values.length - 1);
     return { mean: middle, error: Math.sqrt(variance / values.length) };
   });
@@ -19,7 +20,8 @@ export function channel_statistics(pictures) {
 // Returns, for each channel of b - a, the difference, its standard error and their ratio.
 export function differences(a, b) {
   return a.map((one, c) => {
-    const difference = b[c].mean - one.mean, error = Math.hypot(one.error, b[c].error);
+    const difference = b[c].mean - one.mean,
+      error = Math.hypot(one.error, b[c].error);
     return { difference, error, z: difference / error };
   });
 }
@@ -55,10 +57,15 @@ export function print_agreement({ ours, theirs, blocks }, names) {
   console.log(`\nmean over the picture, theirs less ours, and in standard errors: ${words.join(", ")}`);
   const differing = blocks.map((side, i) => `${names[i]} ${apart(ours.halves, theirs.halves, side)}`);
   console.log(`root mean squared difference of what the two converge to: ${differing.join(", ")}`);
-  for (const [name, one, other] of [["ours", ours, theirs], ["theirs", theirs, ours]]) {
+  for (const [name, one, other] of [
+    ["ours", ours, theirs],
+    ["theirs", theirs, ours],
+  ]) {
     const [a, b] = one.last.pictures;
     const [by_pair, by_other] = [mean_product(a, b, a, b) / 2, squared_error([a, b], other.halves)].map(signed_root);
-    console.log(`${name}: error by its own pair ${by_pair.toFixed(6)}, against the other's pictures ${by_other.toFixed(6)}`);
+    console.log(
+      `${name}: error by its own pair ${by_pair.toFixed(6)}, against the other's pictures ${by_other.toFixed(6)}`,
+    );
   }
 }
 
@@ -75,7 +82,8 @@ export function print_defaults(defaults, samples, { ours, theirs, blocks }, fair
     const [bias, noise] = [difference, error].map((x) => ((100 * x) / reference[c].mean).toFixed(3));
     return `${kChannels[c]} ${bias} +- ${noise} %`;
   });
-  const cpu_s = mean(defaults.map((pair) => pair.cpu_s)), error = signed_root(squared_error(pictures, joint));
+  const cpu_s = mean(defaults.map((pair) => pair.cpu_s)),
+    error = signed_root(squared_error(pictures, joint));
   console.log(
     `\nCycles with Blender's defaults (adaptive to 0.01, at most ${samples} samples; indirect light clamped at 10; light ` +
       `threshold 0.01; first sample through the pixel's centre):\n` +

@@ -5,7 +5,10 @@ import { channel_statistics, differences } from "./cycles_bias.mjs";
 import { show_progress } from "./measure.mjs";
 import { start_renderers } from "./renderers.mjs";
 
-const kMostBounces = 6, kSize = 128, kSamples = 16, kPairs = 8; // pairs of pictures of each renderer
+const kMostBounces = 6,
+  kSize = 128,
+  kSamples = 16,
+  kPairs = 8; // pairs of pictures of each renderer
 const kMostErrors = 3; // in standard errors, largest difference due to chance
 
 async function measure(renderers, bounces, count, samples) {
@@ -23,8 +26,11 @@ const value = ({ mean, error }) => `${mean.toFixed(6)}+-${error.toFixed(6)}`.pad
 
 // Prints the table. `options.seeds` counts pairs of pictures of each renderer.
 export async function compare_path_lengths(scene, { seeds = kPairs, samples = kSamples, size = kSize }) {
-  const renderers = start_renderers(scene, size), count = 2 * seeds;
-  console.log(`\nmeans of R, G and B by path length, ${size}x${size}, ${samples} samples, ${count} seeds; z: theirs less`);
+  const renderers = start_renderers(scene, size),
+    count = 2 * seeds;
+  console.log(
+    `\nmeans of R, G and B by path length, ${size}x${size}, ${samples} samples, ${count} seeds; z: theirs less`,
+  );
   console.log("ours in standard errors");
   const head = ["R", "G", "B"].map((c) => `ours ${c}`.padStart(20) + `theirs ${c}`.padStart(20) + "z".padStart(6));
   console.log(`depth bounces  ${head.join("")}`);

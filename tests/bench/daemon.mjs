@@ -11,10 +11,7 @@ const kStart_ms = 20_000;
 function read_ports(child) {
   return new Promise((resolve, reject) => {
     let output = "";
-    const timer = setTimeout(
-      () => reject(new Error(`orrery serve named no ports; it said: ${output}`)),
-      kStart_ms,
-    );
+    const timer = setTimeout(() => reject(new Error(`orrery serve named no ports; it said: ${output}`)), kStart_ms);
     child.stdout.on("data", (bytes) => {
       output += bytes;
       const match = /http:\/\/\S+:(\d+)\s[^\n]* port (\d+)\n/.exec(output);
@@ -30,9 +27,13 @@ function read_ports(child) {
 // Starts a service on these ports (0: free ones). Resolves to {port, health_port, pid, gone, signal(),
 // stop()}. `gone` resolves to the exit status, or null after a signal.
 export async function start_service(words = [], { port = 0, health_port = 0 } = {}) {
-  const child = spawn(kOrrery, ["serve", "--port", `${port}`, "--health-port", `${health_port}`, ...words.map(String)], {
-    stdio: ["ignore", "pipe", "ignore"],
-  });
+  const child = spawn(
+    kOrrery,
+    ["serve", "--port", `${port}`, "--health-port", `${health_port}`, ...words.map(String)],
+    {
+      stdio: ["ignore", "pipe", "ignore"],
+    },
+  );
   const gone = new Promise((resolve) => child.once("close", resolve));
   const signal = () => child.kill("SIGTERM");
   const stop = async () => {

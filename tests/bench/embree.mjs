@@ -7,8 +7,11 @@ import { ratio_chart } from "./ratio_chart.mjs";
 import { start_two_sided } from "./two_sided.mjs";
 
 const kProgram = "build/bench";
-const kSizes = [1_000, 70_000, 1_000_000], kUsualSize = 70_000; // triangles of generated subjects
-const kKinds = ["primary", "bounce", "bounce-4", "point", "area", "short"], kReach = 1, kAim = 1.2;
+const kSizes = [1_000, 70_000, 1_000_000],
+  kUsualSize = 70_000; // triangles of generated subjects
+const kKinds = ["primary", "bounce", "bounce-4", "point", "area", "short"],
+  kReach = 1,
+  kAim = 1.2;
 const kMostBuilds = 3; // limit of pairs of builds, which take long
 const kWidths = [26, 10, 10, ...kKinds.map(() => 10), 10];
 
@@ -26,9 +29,9 @@ async function measure_case({ mesh, triangles, place, mode }, pairs) {
       const found = [];
       if (kind !== "build") await Promise.all([await sides.ours(kind), await sides.theirs(kind)]);
       for (let pair = 0; pair < (kind === "build" ? Math.min(pairs, kMostBuilds) : pairs); ++pair) {
-        let ours, theirs;
+        let ours;
         if (pair % 2 === 0) ours = await sides.ours(kind);
-        theirs = await sides.theirs(kind);
+        const theirs = await sides.theirs(kind);
         ours ??= await sides.ours(kind);
         found.push(theirs.cost / ours.cost);
       }
@@ -55,12 +58,19 @@ function cases_of(meshes, sizes) {
 }
 
 const name_of = ({ name, triangles, place, mode }) =>
-  [name, triangles ? (triangles >= 1e6 ? `${triangles / 1e6}m` : `${triangles / 1e3}k`) : "", place, mode === "robust" ? mode : ""]
+  [
+    name,
+    triangles ? (triangles >= 1e6 ? `${triangles / 1e6}m` : `${triangles / 1e3}k`) : "",
+    place,
+    mode === "robust" ? mode : "",
+  ]
     .filter(Boolean)
     .join("-");
 
 function print_summary(what, rows) {
-  const all = rows.flatMap(({ name, ratios }) => kKinds.filter((k) => ratios[k]).map((k) => [ratios[k], `${name} ${k}`]));
+  const all = rows.flatMap(({ name, ratios }) =>
+    kKinds.filter((k) => ratios[k]).map((k) => [ratios[k], `${name} ${k}`]),
+  );
   if (all.length === 0) return;
   const [least, where] = all.reduce((worst, one) => (one[0] < worst[0] ? one : worst));
   const under = all.filter(([ratio]) => ratio < kReach).length;
@@ -75,7 +85,9 @@ export const kEmbree = {
   what: "rays and builds beside Embree 3's on meshes of different nature, open and in a closed room; one thread",
   needs: [kProgram],
   async run({ pairs, charts, meshes, triangles }) {
-    console.log("\ntheirs / ours, CPU time: primary rays against Embree's packets of 16, others against its single rays");
+    console.log(
+      "\ntheirs / ours, CPU time: primary rays against Embree's packets of 16, others against its single rays",
+    );
     console.log(cells(["subject", "triangles", "build", ...kKinds, "bytes"]));
     const rows = [];
     for (const one of cases_of(meshes, triangles ? [triangles] : kSizes)) {
@@ -84,7 +96,9 @@ export const kEmbree = {
         const { ratios, facts } = await measure_case(one, pairs);
         const bytes = [facts.our_bytes, facts.their_bytes].map((b) => (b / facts.triangles).toFixed(0)).join("/");
         rows.push({ name, mode: one.mode, ratios, facts });
-        console.log(cells([name, String(facts.triangles), fixed(ratios.build), ...kKinds.map((k) => fixed(ratios[k])), bytes]));
+        console.log(
+          cells([name, String(facts.triangles), fixed(ratios.build), ...kKinds.map((k) => fixed(ratios[k])), bytes]),
+        );
       } catch (error) {
         console.log(`${name} failed: ${error.message}`);
         process.exitCode = 1;
@@ -95,10 +109,18 @@ export const kEmbree = {
     print_summary("against ROBUST, which is watertight too", of_mode("robust"));
     console.log(`reach ${kReach}, aim ${kAim} each; bytes: a triangle, ours/theirs`);
     mkdirSync(charts, { recursive: true });
-    writeFileSync(`${charts}/embree.svg`, ratio_chart("CPU time of Embree 3 beside ours, one thread", of_mode("default"), kKinds));
+    writeFileSync(
+      `${charts}/embree.svg`,
+      ratio_chart("CPU time of Embree 3 beside ours, one thread", of_mode("default"), kKinds),
+    );
     console.log(`chart: ${charts}/embree.svg`);
     return rows.flatMap(({ name, ratios }) =>
-      Object.entries(ratios).map(([kind, ratio]) => ({ name: `embree-${name}-${kind}`, ratio, reach: kReach, aim: kAim })),
+      Object.entries(ratios).map(([kind, ratio]) => ({
+        name: `embree-${name}-${kind}`,
+        ratio,
+        reach: kReach,
+        aim: kAim,
+      })),
     );
   },
 };

@@ -4,11 +4,13 @@ import { povray_scene } from "./povray_scene.mjs";
 
 const kFolder = "build/bench-scenes";
 const kLevel = 4; // 7,381 spheres
-const kSide = 1024, kDepth = 5;
+const kSide = 1024,
+  kDepth = 5;
 
 function start() {
   mkdirSync(kFolder, { recursive: true });
-  const json = `${kFolder}/sphereflake.json`, pov = `${kFolder}/sphereflake.pov`;
+  const json = `${kFolder}/sphereflake.json`,
+    pov = `${kFolder}/sphereflake.pov`;
   run_command(["node", "scenes/generate-sphereflake.mjs", String(kLevel), json]);
   writeFileSync(pov, povray_scene(JSON.parse(readFileSync(json, "utf8")), 1, kDepth));
   return {

@@ -56,7 +56,15 @@ const goes_by = ({ name }, word) => name === word || name.startsWith(`${word}-`)
 const kCounts = { "--triangles": "triangles", "--seeds": "seeds", "--samples": "samples", "--size": "size" };
 
 function read_arguments(words) {
-  const options = { names: [], pairs: 7, json: null, charts: "build/charts", meshes: null, list: false, bounces: false };
+  const options = {
+    names: [],
+    pairs: 7,
+    json: null,
+    charts: "build/charts",
+    meshes: null,
+    list: false,
+    bounces: false,
+  };
   for (let i = 0; i < words.length; ++i) {
     if (words[i] === "--list") options.list = true;
     else if (words[i] === "--bounces") options.bounces = true;

@@ -15,15 +15,17 @@ export function show_progress(text) {
 // / ours by pair. Seconds are medians.
 export async function measure(benchmark, pairs) {
   const sides = await benchmark.start();
-  const ratios = [], ours_cpu_s = [], theirs_cpu_s = [];
+  const ratios = [],
+    ours_cpu_s = [],
+    theirs_cpu_s = [];
   try {
     await sides.ours();
     await sides.theirs();
     for (let pair = 0; pair < pairs; ++pair) {
       show_progress(`${benchmark.name}: pair ${pair + 1} of ${pairs}`);
-      let ours, theirs;
+      let ours;
       if (pair % 2 === 0) ours = await sides.ours();
-      theirs = await sides.theirs();
+      const theirs = await sides.theirs();
       ours ??= await sides.ours();
       ratios.push(theirs.cost / ours.cost);
       ours_cpu_s.push(ours.cpu_s);

@@ -11,7 +11,8 @@ function cloth() {
   const side = 190;
   const sheet = (phase) =>
     Array.from({ length: (side + 1) ** 2 }, (_, i) => {
-      const x = (4 * (i % (side + 1))) / side - 2, z = (4 * Math.floor(i / (side + 1))) / side - 2;
+      const x = (4 * (i % (side + 1))) / side - 2,
+        z = (4 * Math.floor(i / (side + 1))) / side - 2;
       const y = 0.3 * Math.sin(2.5 * x + phase) * Math.cos(1.7 * z) + 0.02 * Math.sin(23 * x + 19 * z);
       return [x, y, z].map((value) => Number(value.toFixed(5)));
     });
@@ -34,7 +35,8 @@ function cloth() {
 
 // Returns a scene with 4,000 balls, each of which flies to a different place.
 function swarm() {
-  const random = random_numbers(11), at = () => [0, 1, 2].map(() => 8 * random() - 4);
+  const random = random_numbers(11),
+    at = () => [0, 1, 2].map(() => 8 * random() - 4);
   const scene = scene_of(
     "4,000 balls that fly about",
     [{ type: "plane", point: [0, -5, 0], normal: [0, 1, 0], material: "chalk" }],

@@ -3,7 +3,8 @@ import { kOrrery } from "./command.mjs";
 import { FrameReader, cpu_seconds, post_scene, send, start_service } from "./daemon.mjs";
 
 const kScene = "scenes/paper.json"; // 600x600
-const kFrames = 300, kThreads = 2;
+const kFrames = 300,
+  kThreads = 2;
 
 // ---- without HTTP: the command line's orbit renders and encodes the same frames
 
@@ -26,7 +27,8 @@ async function http_run() {
     const start = process.hrtime.bigint();
     const path = `/v1/scenes/${id}/orbit?frames=${kFrames}&fps=0`;
     const response = await send(service.port, "GET", path, { Accept: "application/x-orrery-frames" });
-    let frames = 0, skipped = 0;
+    let frames = 0,
+      skipped = 0;
     const reader = new FrameReader((header) => {
       ++frames;
       skipped = header.skipped;

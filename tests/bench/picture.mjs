@@ -3,7 +3,10 @@
 import { readFileSync } from "node:fs";
 import { inflateSync } from "node:zlib";
 
-const kMagic = 20000630, kVersion = 2, kLongNames = 0x400, kFloat = 2;
+const kMagic = 20000630,
+  kVersion = 2,
+  kLongNames = 0x400,
+  kFloat = 2;
 const kLinesOf = { 0: 1, 2: 1, 3: 16 }; // scan lines per block, by compression: none, ZIPS, ZIP
 
 // Returns the attributes by name, as the bytes of their values, and the offset of their end.
@@ -28,7 +31,7 @@ function read_header(file) {
 // Returns the names of the channels in the order of the file. Throws Error unless all are 32-bit floats.
 function channels_of(list) {
   const names = [];
-  for (let at = 0; list[at] !== 0; ) {
+  for (let at = 0; list[at] !== 0;) {
     const end = list.indexOf(0, at);
     names.push(list.toString("latin1", at, end));
     if (list.readInt32LE(end + 1) !== kFloat) throw new Error("the picture is not of 32 bit floats");
@@ -40,7 +43,9 @@ function channels_of(list) {
 // Inflates a ZIP or ZIPS block and undoes its filter: even bytes first, then odd ones, each less the one
 // before.
 function unpack(packed) {
-  const bytes = inflateSync(packed), half = (bytes.length + 1) >> 1, unpacked = Buffer.alloc(bytes.length);
+  const bytes = inflateSync(packed),
+    half = (bytes.length + 1) >> 1,
+    unpacked = Buffer.alloc(bytes.length);
   for (let i = 1; i < bytes.length; ++i) bytes[i] += bytes[i - 1] - 128;
   for (let i = 0; i < bytes.length; ++i) unpacked[i] = bytes[(i >> 1) + (i & 1 ? half : 0)];
   return unpacked;
@@ -54,18 +59,24 @@ export function read_exr(path) {
   if (!is_plain) throw new Error(`${path} is no OpenEXR picture of one part in scan lines`);
   const { attributes, end } = read_header(file);
   const [left, top, right, bottom] = [0, 4, 8, 12].map((at) => attributes.dataWindow.readInt32LE(at));
-  const width = right - left + 1, height = bottom - top + 1;
-  const channels = channels_of(attributes.channels), lines = kLinesOf[attributes.compression[0]];
+  const width = right - left + 1,
+    height = bottom - top + 1;
+  const channels = channels_of(attributes.channels),
+    lines = kLinesOf[attributes.compression[0]];
   if (!lines) throw new Error(`${path} is compressed in a way that is not known here`);
   const places = channels.map((name) => "RGB".indexOf(name)); // -1: a channel that is not read
-  const values = new Float32Array(3 * width * height), line_bytes = 4 * width * channels.length;
+  const values = new Float32Array(3 * width * height),
+    line_bytes = 4 * width * channels.length;
   for (let block = 0; block * lines < height; ++block) {
-    const at = Number(file.readBigUInt64LE(end + 8 * block)), size = file.readInt32LE(at + 4);
-    const first = file.readInt32LE(at) - top, count = Math.min(lines, height - first);
+    const at = Number(file.readBigUInt64LE(end + 8 * block)),
+      size = file.readInt32LE(at + 4);
+    const first = file.readInt32LE(at) - top,
+      count = Math.min(lines, height - first);
     const stored = file.subarray(at + 8, at + 8 + size);
     const bytes = size < count * line_bytes ? unpack(stored) : stored;
     for (let i = 0; i < count * channels.length; ++i) {
-      const row = first + Math.floor(i / channels.length), place = places[i % channels.length];
+      const row = first + Math.floor(i / channels.length),
+        place = places[i % channels.length];
       if (place < 0) continue;
       for (let x = 0; x < width; ++x) values[3 * (row * width + x) + place] = bytes.readFloatLE(4 * (i * width + x));
     }
@@ -77,11 +88,13 @@ export function read_exr(path) {
 // of side.
 export function block_means({ width, height, values }, side) {
   if (side === 1) return { width, height, values };
-  const across = width / side, means = new Float64Array((3 * across * height) / side);
+  const across = width / side,
+    means = new Float64Array((3 * across * height) / side);
   for (let y = 0; y < height; ++y)
     for (let x = 0; x < width; ++x)
       for (let c = 0; c < 3; ++c)
-        means[3 * (Math.floor(y / side) * across + Math.floor(x / side)) + c] += values[3 * (y * width + x) + c] / side ** 2;
+        means[3 * (Math.floor(y / side) * across + Math.floor(x / side)) + c] +=
+          values[3 * (y * width + x) + c] / side ** 2;
   return { width: across, height: height / side, values: means };
 }
 
@@ -96,7 +109,8 @@ export function mean_product(a, b, c, d) {
 // averaged.
 export function product_statistics(a, b, c, d) {
   const pixels = a.values.length / 3;
-  let sum = 0, squares = 0;
+  let sum = 0,
+    squares = 0;
   for (let i = 0; i < pixels; ++i) {
     let product = 0;
     for (let j = 3 * i; j < 3 * i + 3; ++j) product += ((a.values[j] - b.values[j]) * (c.values[j] - d.values[j])) / 3;
@@ -115,7 +129,8 @@ export function channel_means({ values }) {
 }
 
 export function mean_picture(pictures) {
-  const { width, height } = pictures[0], values = new Float64Array(3 * width * height);
+  const { width, height } = pictures[0],
+    values = new Float64Array(3 * width * height);
   for (const picture of pictures) picture.values.forEach((value, i) => (values[i] += value / pictures.length));
   return { width, height, values };
 }

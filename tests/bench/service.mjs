@@ -18,7 +18,19 @@ import { kViewers } from "./service/viewers.mjs";
 
 // Properties. Each has name; what: one line; seconds or times: default duration or repetitions; and
 // run({seconds, times}), which resolves to {rows, remark}. A row is {what, target, measured, met}.
-const kProperties = [kBlockade, kMemory, kHealth, kOverload, kLeaves, kSigterm, kRestarts, kViewers, kCached, kStart, kSoak];
+const kProperties = [
+  kBlockade,
+  kMemory,
+  kHealth,
+  kOverload,
+  kLeaves,
+  kSigterm,
+  kRestarts,
+  kViewers,
+  kCached,
+  kStart,
+  kSoak,
+];
 
 const kUsage =
   "usage: tests/bench/run service [PROPERTY...] [--seconds N] [--times N] [--json FILE] [--list]\n" +
@@ -47,15 +59,13 @@ function read_arguments(words) {
 }
 
 const kWidths = [11, 58, 22];
-const line = (cells) =>
-  cells.map((cell, i) => (i < kWidths.length ? cell.padEnd(kWidths[i]) : cell)).join(" ");
+const line = (cells) => cells.map((cell, i) => (i < kWidths.length ? cell.padEnd(kWidths[i]) : cell)).join(" ");
 const verdict = ({ met }) => (met === null ? "" : met ? "met: " : "MISSED: ");
 
 async function measure(property, options) {
   const amount = { seconds: options.seconds ?? property.seconds, times: options.times ?? property.times };
   const { rows, remark } = await property.run(amount);
-  for (const row of rows)
-    console.log(line([property.name, row.what, row.target, verdict(row) + row.measured]));
+  for (const row of rows) console.log(line([property.name, row.what, row.target, verdict(row) + row.measured]));
   if (remark) console.log(`  ${property.name}: ${remark}`);
   return rows.map((row) => ({ property: property.name, ...row }));
 }

@@ -8,7 +8,8 @@ import { setTimeout as sleep } from "node:timers/promises";
 import { start_service } from "./daemon.mjs";
 
 const kSeconds = Number(process.env.BENCH_ATTACK_S ?? 60); // for each attack
-const kConnections = 1000, kRate = 200; // kRate: per second
+const kConnections = 1000,
+  kRate = 200; // kRate: per second
 const kEvery_ms = 50;
 const kSpare = 4; // descriptors of the normal clients
 
@@ -16,7 +17,12 @@ const kSpare = 4; // descriptors of the normal clients
 const kAttacks = [
   { mode: "-H", name: "slow heads", path: "/", more: [] },
   { mode: "-B", name: "slow bodies", path: "/v1/scenes", more: [] },
-  { mode: "-X", name: "slow readers", path: "/scenes/sphereflake-3.json", more: ["-k", "5", "-w", "512", "-y", "1024"] },
+  {
+    mode: "-X",
+    name: "slow readers",
+    path: "/scenes/sphereflake-3.json",
+    more: ["-k", "5", "-w", "512", "-y", "1024"],
+  },
   { mode: "-R", name: "ranges", path: "/", more: ["-t", "GET"] },
 ];
 
@@ -28,7 +34,10 @@ function ask(port) {
   return new Promise((resolve) => {
     const done = (ok) => resolve({ ok, ms: performance.now() - start });
     const request = http.get({ host: "127.0.0.1", port, path: "/", agent: false, timeout: 10_000 }, (response) => {
-      response.on("error", () => done(false)).on("end", () => done(response.statusCode === 200)).resume();
+      response
+        .on("error", () => done(false))
+        .on("end", () => done(response.statusCode === 200))
+        .resume();
     });
     request.on("timeout", () => request.destroy()).on("error", () => done(false));
   });
@@ -36,7 +45,20 @@ function ask(port) {
 
 // Repeats the attack, which ends early once all its connections are closed. Resolves to the number of runs.
 async function attack_until(end, port, { mode, path, more }) {
-  const words = [mode, "-c", kConnections, "-r", kRate, "-i", 5, "-u", `http://127.0.0.1:${port}${path}`, "-v", 0, ...more];
+  const words = [
+    mode,
+    "-c",
+    kConnections,
+    "-r",
+    kRate,
+    "-i",
+    5,
+    "-u",
+    `http://127.0.0.1:${port}${path}`,
+    "-v",
+    0,
+    ...more,
+  ];
   let runs = 0;
   while (performance.now() < end) {
     const seconds = Math.max(1, Math.round((end - performance.now()) / 1000));
@@ -83,27 +105,44 @@ async function measure(attack) {
     const ms = answers.map((answer) => answer.ms).sort((a, b) => a - b);
     const quantile = (q) => ms[Math.min(ms.length - 1, Math.floor(q * ms.length))];
     const served = answers.filter((answer) => answer.ok).length;
-    return { runs, asked: ms.length, served, p50: quantile(0.5), p99: quantile(0.99), worst: ms.at(-1), before, most, back_s };
+    return {
+      runs,
+      asked: ms.length,
+      served,
+      p50: quantile(0.5),
+      p99: quantile(0.99),
+      worst: ms.at(-1),
+      before,
+      most,
+      back_s,
+    };
   } finally {
     await service.stop();
   }
 }
 
 const kColumns = [14, 7, 8, 10, 9, 9, 9, 13, 8];
-const row = (cells) => cells.map((cell, i) => (i === 0 ? cell.padEnd(kColumns[i]) : cell.padStart(kColumns[i]))).join("");
+const row = (cells) =>
+  cells.map((cell, i) => (i === 0 ? cell.padEnd(kColumns[i]) : cell.padStart(kColumns[i]))).join("");
 
 export const kSlowClients = {
   name: "slow-clients",
   what: `${kConnections} connections of slowhttptest for ${kSeconds} s in each of its modes: what others get meanwhile`,
   needs: ["slowhttptest"],
   async run() {
-    console.log("\n" + row(["attack", "runs", "asked", "served %", "p50 ms", "p99 ms", "most ms", "descriptors", "back s"]));
+    console.log(
+      "\n" + row(["attack", "runs", "asked", "served %", "p50 ms", "p99 ms", "most ms", "descriptors", "back s"]),
+    );
     for (const attack of kAttacks) {
       const r = await measure(attack);
       const cells = [(100 * r.served) / r.asked, r.p50, r.p99, r.worst].map((value) => value.toFixed(1));
-      console.log(row([attack.name, String(r.runs), String(r.asked), ...cells, `${r.before}..${r.most}`, r.back_s.toFixed(1)]));
+      console.log(
+        row([attack.name, String(r.runs), String(r.asked), ...cells, `${r.before}..${r.most}`, r.back_s.toFixed(1)]),
+      );
     }
-    console.log("served: GET / answered with 200, asked every 50 ms on new connections; aims: 100 %, p99 at most 250 ms,");
+    console.log(
+      "served: GET / answered with 200, asked every 50 ms on new connections; aims: 100 %, p99 at most 250 ms,",
+    );
     console.log("descriptors back within 15 s; runs: slowhttptest starts again when all its connections were closed");
   },
 };

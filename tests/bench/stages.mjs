@@ -10,7 +10,8 @@ const kProgram = "build/stages";
 // prediction.
 function write_shade() {
   mkdirSync(kFolder, { recursive: true });
-  const random = random_numbers(7), at = () => 8 * random() - 4;
+  const random = random_numbers(7),
+    at = () => 8 * random() - 4;
   const ball = (center, radius) => ({ type: "sphere", center, radius, material: "chalk" });
   const meadow = Array.from({ length: 8000 }, () => ball([at(), 0.1 * random(), at()], 0.02 + 0.04 * random()));
   const clouds = Array.from({ length: 6 }, () => ball([0.7 * at(), 2.5 + random(), 0.7 * at()], 0.9));

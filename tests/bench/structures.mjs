@@ -24,10 +24,22 @@ function save(folder, name, svg) {
   console.log(`chart: ${folder}/${name}`);
 }
 
-const cells = (values, widths) => values.map((v, i) => (i === 0 ? v.padEnd(widths[i]) : v.padStart(widths[i]))).join("");
+const cells = (values, widths) =>
+  values.map((v, i) => (i === 0 ? v.padEnd(widths[i]) : v.padStart(widths[i]))).join("");
 const fixed = (value) => (value >= 100 ? value.toFixed(0) : value.toPrecision(3));
 
-const kColumns = ["structure", "build", "ray", "counted", "visits", "boxes", "primitives", "bytes", "depth", "references"];
+const kColumns = [
+  "structure",
+  "build",
+  "ray",
+  "counted",
+  "visits",
+  "boxes",
+  "primitives",
+  "bytes",
+  "depth",
+  "references",
+];
 const kWidths = [17, 9, 9, 9, 10, 10, 12, 10, 7, 12];
 
 function print_scene(name, result) {
@@ -59,7 +71,8 @@ function scene_panel(name, result, names) {
   const series = names.map((structure) => {
     const s = result.structures.find((one) => one.name === structure);
     if (!s) return { name: structure, points: [] };
-    const x = Math.max(s.build_s / usual.build_s, 1e-3), y = s.ray_s / usual.ray_s;
+    const x = Math.max(s.build_s / usual.build_s, 1e-3),
+      y = s.ray_s / usual.ray_s;
     return { name: structure, points: [{ x, y, label: structure, ring: structure === result.auto }] };
   });
   return { title: name, x: "build time", y: "ray cost", series };
@@ -74,7 +87,9 @@ const kStructures = {
       print_scene(name, result);
       return [name, result];
     });
-    console.log("\nbuild and ray: CPU time beside bvh's, medians of interleaved rounds on one thread; counted: cost by");
+    console.log(
+      "\nbuild and ray: CPU time beside bvh's, medians of interleaved rounds on one thread; counted: cost by",
+    );
     console.log("counts beside the least; visits, boxes, primitives: a ray; bytes and references: a primitive");
     const names = [...new Set(results.flatMap(([, result]) => result.structures.map((s) => s.name)))];
     const panels = results.map(([name, result]) => scene_panel(name, result, names));
@@ -100,8 +115,12 @@ const kGrowth = {
       console.log(
         cells(
           [
-            String(row.triangles), fixed(row.visits), fixed(row.primitives), fixed(row.ray_s / rows[0].ray_s),
-            fixed(build(row) / build(rows[0])), fixed(row.bytes / row.triangles),
+            String(row.triangles),
+            fixed(row.visits),
+            fixed(row.primitives),
+            fixed(row.ray_s / rows[0].ray_s),
+            fixed(build(row) / build(rows[0])),
+            fixed(row.bytes / row.triangles),
           ],
           widths,
         ),
@@ -113,13 +132,18 @@ const kGrowth = {
       { title: "primitive tests a ray", key: "primitives" },
       { title: "CPU time a ray", key: "relative" },
     ].map(({ title, key }) => ({
-      title, x: "triangles", y: key === "relative" ? "beside 1e3 triangles" : "a ray", y_axis: "linear",
-      series: key === "relative"
-        ? [{ name: key, line: true, points: rows.map((row) => ({ x: row.triangles, y: row.ray_s / rows[0].ray_s })) }]
-        : series(key),
+      title,
+      x: "triangles",
+      y: key === "relative" ? "beside 1e3 triangles" : "a ray",
+      y_axis: "linear",
+      series:
+        key === "relative"
+          ? [{ name: key, line: true, points: rows.map((row) => ({ x: row.triangles, y: row.ray_s / rows[0].ray_s })) }]
+          : series(key),
     }));
     const title = "Growth: a straight line here is a logarithm";
-    const note = "hierarchy by the surface area heuristic, closest hits of rays at random through a bumpy ball, one thread";
+    const note =
+      "hierarchy by the surface area heuristic, closest hits of rays at random through a bumpy ball, one thread";
     save(charts, "growth.svg", chart({ title, note, panels, columns: 3, names: [] }));
   },
 };

@@ -58,7 +58,8 @@ function write_ply(path, vertices, vertex, triangles, triangle) {
 function write_bumpy_sphere(path, triangles, radius) {
   const side = Math.max(3, Math.round(Math.sqrt(triangles / 2)));
   const vertex = (i) => {
-    const polar = (Math.PI * Math.floor(i / side)) / side, around = (2 * Math.PI * (i % side)) / side;
+    const polar = (Math.PI * Math.floor(i / side)) / side,
+      around = (2 * Math.PI * (i % side)) / side;
     const bumps =
       0.1 * Math.sin(5 * polar) * Math.cos(4 * around) +
       0.03 * Math.sin(31 * polar) * Math.cos(24 * around) +
@@ -67,8 +68,14 @@ function write_bumpy_sphere(path, triangles, radius) {
     return [r * Math.sin(polar) * Math.cos(around), r * Math.cos(polar), r * Math.sin(polar) * Math.sin(around)];
   };
   const triangle = (i) => {
-    const square = i >> 1, row = Math.floor(square / side), column = square % side, next = (column + 1) % side;
-    const a = row * side + column, b = row * side + next, c = a + side, d = b + side;
+    const square = i >> 1,
+      row = Math.floor(square / side),
+      column = square % side,
+      next = (column + 1) % side;
+    const a = row * side + column,
+      b = row * side + next,
+      c = a + side,
+      d = b + side;
     return i % 2 === 0 ? [a, b, c] : [b, d, c];
   };
   write_ply(path, side * (side + 1), vertex, 2 * side * side, triangle);
@@ -83,14 +90,19 @@ const kSubjects = {
     return null;
   },
   cloud: () => {
-    const random = random_numbers(1), at = () => 8 * random() - 4;
+    const random = random_numbers(1),
+      at = () => 8 * random() - 4;
     const ball = (i) => ({
       type: "sphere",
       center: [at(), at(), at()],
       radius: 0.05 + 0.1 * random(),
       material: i % 4 ? "chalk" : "steel",
     });
-    return scene_of("A cloud of 8,000 balls", Array.from({ length: 8000 }, (_, i) => ball(i)), [0, 0, 13]);
+    return scene_of(
+      "A cloud of 8,000 balls",
+      Array.from({ length: 8000 }, (_, i) => ball(i)),
+      [0, 0, 13],
+    );
   },
   stadium: () => {
     write_bumpy_sphere(`${kFolder}/stadium-teapot.ply`, 10_000, 0.5);
@@ -102,7 +114,8 @@ const kSubjects = {
     };
     for (let row = 0; row < 4; ++row)
       for (let i = 0; i < ring; ++i) {
-        const low = 400 + 25 * row, y = 15 * row - 20;
+        const low = 400 + 25 * row,
+          y = 15 * row - 20;
         const [a, b] = [place(i, low, y), place(i + 1, low, y)];
         const [c, d] = [place(i, low + 25, y + 15), place(i + 1, low + 25, y + 15)];
         objects.push({ type: "triangle", vertices: [a, b, c], material: "chalk" });
@@ -111,9 +124,11 @@ const kSubjects = {
     return scene_of("A teapot's worth of triangles in a stadium", objects, [1.2, 0.8, 1.8]);
   },
   needles: () => {
-    const random = random_numbers(3), at = (size) => size * (2 * random() - 1);
+    const random = random_numbers(3),
+      at = (size) => size * (2 * random() - 1);
     const needle = () => {
-      const from = [at(3), at(3), at(3)], along = [at(2), at(2), at(2)];
+      const from = [at(3), at(3), at(3)],
+        along = [at(2), at(2), at(2)];
       return [from, from.map((x, k) => x + along[k]), from.map((x) => x + at(0.02))];
     };
     const objects = Array.from({ length: 6000 }, () => ({ type: "triangle", vertices: needle(), material: "chalk" }));
@@ -142,7 +157,8 @@ const kSubjects = {
 // Writes a bumpy ball of about `triangles` triangles. Returns the path of the scene.
 export function write_ball(triangles) {
   mkdirSync(kFolder, { recursive: true });
-  const name = `ball-${triangles}`, path = `${kFolder}/${name}.json`;
+  const name = `ball-${triangles}`,
+    path = `${kFolder}/${name}.json`;
   write_bumpy_sphere(`${kFolder}/${name}.ply`, triangles, 1);
   const objects = [{ type: "mesh", file: `${name}.ply`, material: "chalk" }];
   writeFileSync(path, JSON.stringify(scene_of(`A ball of ${triangles} triangles`, objects, [0.7, 0.9, 3])));
@@ -154,7 +170,8 @@ export function write_subjects() {
   mkdirSync(kFolder, { recursive: true });
   const written = [];
   for (const [name, make] of Object.entries(kSubjects)) {
-    const path = `${kFolder}/${name}.json`, made = make();
+    const path = `${kFolder}/${name}.json`,
+      made = make();
     if (made === undefined) {
       console.error(`${name} left out: its file is looked for in the folder that BENCH_MESHES names`);
       continue;

@@ -3,10 +3,20 @@
 
 import assert from "node:assert/strict";
 import { after } from "node:test";
-import { axe_violations, canvas_digest, charted, eventually, hash_of, page_tests, quick_charts, rest, start_both } from "./support.mjs";
+import {
+  axeViolations,
+  canvasDigest,
+  charted,
+  eventually,
+  hashOf,
+  pageTests,
+  quickCharts,
+  rest,
+  startBoth,
+} from "./support.mjs";
 
-const { daemon, browser } = await start_both(after);
-const page_test = page_tests(browser, daemon);
+const { daemon, browser } = await startBoth(after);
+const pageTest = pageTests(browser, daemon);
 
 const still = { reducedMotion: "reduce" };
 const text = (page, id) => page.locator(`#${id}`).textContent();
@@ -14,21 +24,21 @@ const shown = (page) => page.locator("#overlay").getAttribute("data-shows");
 const query = (address) => new URLSearchParams(address.split("?")[1]);
 
 // Goes to the first stop. Resolves to the address of its picture once it is shown.
-async function first_stop(page, slider) {
+async function firstStop(page, slider) {
   const last = await shown(page);
   await slider.press("Home");
   return eventually("the first picture", async () => ((await shown(page)) !== last ? shown(page) : null));
 }
 
-const line_shape = /^[\d.]+ (ms|s), error ≤ [\d.e-]+ \(95 %\), \w+, depth \d+, \d+ samples?, (float|double)$/;
+const lineShape = /^[\d.]+ (ms|s), error ≤ [\d.e-]+ \(95 % confidence\), \w+, depth \d+, \d+ samples?, (float|double)$/;
 
-page_test(
-  "before there is a chart a button offers one, and says how far it is",
+pageTest(
+  "the chart button makes a chart and reports its progress",
   "playing=0",
   async (page) => {
-    const seen = await quick_charts(page);
+    const seen = await quickCharts(page);
     await rest(page);
-    const make = page.getByRole("button", { name: "Chart speed against accuracy" });
+    const make = page.getByRole("button", { name: "Make speed and accuracy chart" });
     assert.equal(await page.locator("#stop").isVisible(), false);
     assert.equal(await page.locator("#reference").isVisible(), false);
     const progress = await page.evaluateHandle(() => {
@@ -43,49 +53,58 @@ page_test(
     assert.deepEqual(await page.locator("#stage").boundingBox(), before, "nothing moves");
     assert.equal(await make.isVisible(), false);
     const texts = await progress.evaluate(({ texts: all }) => [...all]);
-    assert.ok(texts.some((each) => /\d+ %/.test(each)), texts.join("\n"));
+    assert.ok(
+      texts.some((each) => /\d+ %/.test(each)),
+      texts.join("\n"),
+    );
     const [{ image, chart }] = seen;
     const canvas = await page.locator("#canvas").evaluate(({ width, height }) => ({ width, height }));
     assert.deepEqual(image, canvas, "times are predicted for what the stage shows");
     assert.ok(chart.width < image.width);
-    assert.deepEqual(await axe_violations(page), []);
+    assert.deepEqual(await axeViolations(page), []);
   },
   still,
 );
 
-page_test(
-  "before there is a chart it is predicted what the budgets would give, of the picture at rest",
+pageTest(
+  "without a chart, the page predicts the results of the budgets",
   "scene=cornell-box&playing=0&samples=2",
   async (page) => {
-    const asked = [];
-    page.on("request", (request) => /explain/.test(request.url()) && asked.push(query(request.url())));
-    const line = /^With a limit of 2 s: error ≤ 0\.\d+, on a display · of 2 % error: ([\d.]+ (ms|s|min)|missed, error ≤ 0\.\d+, on a display) · of 0\.5 % error: /;
+    const requested = [];
+    page.on("request", (request) => /explain/.test(request.url()) && requested.push(query(request.url())));
+    const line =
+      /^Prediction: 2 s gives error ≤ 0\.\d+ in display values · 2 % error (takes [\d.]+ (ms|s|min)|is out of reach \(error ≤ 0\.\d+ in display values\)) · 0\.5 % error /;
     const predicted = () => eventually("the prediction", async () => line.exec(await text(page, "stop-line"))?.input);
     await predicted();
-    assert.deepEqual(await axe_violations(page), []);
-    asked.length = 0;
+    assert.deepEqual(await axeViolations(page), []);
+    requested.length = 0;
     await page.locator("#stage").hover();
     await page.mouse.wheel(0, 100);
-    await eventually("the offer", async () => /The chart renders this view in many ways/.test(await text(page, "stop-line")));
+    await eventually("the offer", async () =>
+      /The chart renders this view with different settings/.test(await text(page, "stop-line")),
+    );
     await predicted();
-    assert.deepEqual(asked.map((each) => each.get("seconds") ?? each.get("error")), ["2", "0.02", "0.005"]);
-    assert.deepEqual([...new Set(asked.map((each) => each.get("samples")))], ["2"], "what was chosen");
+    assert.deepEqual(
+      requested.map((each) => each.get("seconds") ?? each.get("error")),
+      ["2", "0.02", "0.005"],
+    );
+    assert.deepEqual([...new Set(requested.map((each) => each.get("samples")))], ["2"], "what was chosen");
     await page.locator("#technique").selectOption("raycast");
-    await eventually("that of other options", async () => asked.at(-1).get("technique") === "raycast");
+    await eventually("that of other options", async () => requested.at(-1).get("technique") === "raycast");
     await page.goBack();
-    await eventually("the first again", async () => asked.at(-1).get("technique") !== "raycast");
+    await eventually("the first again", async () => requested.at(-1).get("technique") !== "raycast");
     await predicted();
-    const before = asked.length;
+    const before = requested.length;
     await page.getByRole("button", { name: "2 s" }).click();
-    await eventually("the budget", async () => /^Limit /.test(await text(page, "told")));
+    await eventually("the budget", async () => /^Limit /.test(await text(page, "budget-status")));
     await predicted();
-    assert.equal(asked.length, before, "what is known is not asked again");
+    assert.equal(requested.length, before, "what is known is not asked again");
   },
   still,
 );
 
-page_test(
-  "a prediction that is refused leaves the offer, and is asked of the next picture",
+pageTest(
+  "a rejected prediction is requested again for the next picture",
   "playing=0",
   async (page) => {
     const refused = [];
@@ -96,54 +115,59 @@ page_test(
     await page.locator("#technique").selectOption("raycast");
     await eventually("the refusal", async () => refused.includes("raycast"));
     await rest(page);
-    assert.match(await text(page, "stop-line"), /The chart renders this view in many ways/);
+    assert.match(await text(page, "stop-line"), /The chart renders this view with different settings/);
     assert.equal(refused.filter((technique) => technique === "raycast").length, 1);
     await page.unroute("**/explain?**");
     await page.locator("#stage").hover();
     await page.mouse.wheel(0, 100);
-    await eventually("the prediction", async () => /^With a limit of /.test(await text(page, "stop-line")));
+    await eventually("the prediction", async () => /^Prediction: /.test(await text(page, "stop-line")));
   },
   { ...still, expected: /status of 429/ },
 );
 
-page_test(
-  "the slider goes from stop to stop by keys, and says what each is",
+pageTest(
+  "arrow keys move the slider from stop to stop and describe each",
   "playing=0",
   async (page) => {
     const slider = await charted(page);
-    const said = () => slider.getAttribute("aria-valuetext");
-    const told = [];
+    const valueText = () => slider.getAttribute("aria-valuetext");
+    const lines = [];
     await slider.press("Home");
-    for (let last = ""; last !== (await said()); await slider.press("ArrowRight")) {
-      last = await said();
-      assert.match(last, line_shape);
+    for (let last = ""; last !== (await valueText()); await slider.press("ArrowRight")) {
+      last = await valueText();
+      assert.match(last, lineShape);
       assert.equal(await text(page, "stop-line"), last);
-      assert.match(await text(page, "stop-note"), /^The picture alone tells: error (unknown, because of \w+|≤)/);
-      told.push(last);
+      assert.match(await text(page, "stop-note"), /^Without a reference: error (unknown because of \w+|≤)/);
+      lines.push(last);
     }
-    assert.ok(told.length >= 3, told.join("\n"));
-    const errors = told.map((each) => Number(/≤ ([\d.e-]+)/.exec(each)[1]));
+    assert.ok(lines.length >= 3, lines.join("\n"));
+    const errors = lines.map((each) => Number(/≤ ([\d.e-]+)/.exec(each)[1]));
     assert.ok(errors[0] > 2 * errors.at(-1), errors.join());
     const pictures = new Set();
-    for (const [key, line] of [["Home", told[0]], ["End", told.at(-1)], ["ArrowLeft", told.at(-2)], ["ArrowDown", told.at(-3)]]) {
+    for (const [key, line] of [
+      ["Home", lines[0]],
+      ["End", lines.at(-1)],
+      ["ArrowLeft", lines.at(-2)],
+      ["ArrowDown", lines.at(-3)],
+    ]) {
       await slider.press(key);
-      assert.equal(await said(), line, key);
+      assert.equal(await valueText(), line, key);
       const samples = /(\d+) sample/.exec(line)[1];
       await eventually(`the picture of ${line}`, async () => {
-        const asked = query(await shown(page)).get("samples");
-        return samples === (asked ?? "1");
+        const requested = query(await shown(page)).get("samples");
+        return samples === (requested ?? "1");
       });
       pictures.add(await shown(page));
     }
-    assert.equal(pictures.size, new Set([told[0], told.at(-1), told.at(-2), told.at(-3)]).size);
-    assert.deepEqual(await axe_violations(page), []);
+    assert.equal(pictures.size, new Set([lines[0], lines.at(-1), lines.at(-2), lines.at(-3)]).size);
+    assert.deepEqual(await axeViolations(page), []);
   },
   still,
 );
 
-page_test(
-  "the slider's thumb rests on a stop when a pointer lets it go",
-  "playing=0",
+pageTest(
+  "the slider's thumb snaps to a stop when the pointer is released",
+  "playing=0&az=30",
   async (page) => {
     const slider = await charted(page);
     const box = await slider.boundingBox();
@@ -159,15 +183,15 @@ page_test(
     await page.locator("#overlay").waitFor({ state: "hidden" });
     await rest(page);
     await slider.press("End");
-    await eventually("another view", async () => /another view/.test(await text(page, "stop-note")));
+    await eventually("another view", async () => /for another view/.test(await text(page, "stop-note")));
     await page.locator("#overlay").waitFor({ state: "visible" });
     assert.notEqual(query(await shown(page)).get("distance"), null, "the picture is of the view at hand");
   },
   still,
 );
 
-page_test(
-  "the slider follows a finger",
+pageTest(
+  "a tap moves the slider",
   "playing=0",
   async (page) => {
     const slider = await charted(page);
@@ -183,27 +207,27 @@ page_test(
         .map(({ id }) => id),
     );
     assert.deepEqual(outside, []);
-    assert.deepEqual(await axe_violations(page), []);
+    assert.deepEqual(await axeViolations(page), []);
   },
   { ...still, viewport: { width: 360, height: 740 }, isMobile: true, hasTouch: true },
 );
 
-page_test(
-  "R and its button hold the reference over the stage",
+pageTest(
+  "key R and its button show the reference while held",
   "playing=0",
   async (page) => {
     const slider = await charted(page);
-    const first = await first_stop(page, slider);
-    const is_reference = async () => query(await shown(page)).get("samples") === "64";
+    const first = await firstStop(page, slider);
+    const isReference = async () => query(await shown(page)).get("samples") === "64";
     await page.keyboard.down("r");
-    await eventually("the reference", is_reference);
+    await eventually("the reference", isReference);
     assert.equal(query(await shown(page)).get("precision"), "double");
     await page.keyboard.up("r");
     await eventually("the point again", async () => (await shown(page)) === first);
     const box = await page.locator("#reference").boundingBox();
     await page.mouse.move(box.x + 5, box.y + 5);
     await page.mouse.down();
-    await eventually("the reference", is_reference);
+    await eventually("the reference", isReference);
     assert.equal(await page.locator("#reference").getAttribute("aria-pressed"), "true");
     await page.mouse.up();
     await eventually("the point again", async () => (await shown(page)) === first);
@@ -211,18 +235,18 @@ page_test(
   still,
 );
 
-page_test(
-  "E asks for the bound of the same plan, and says in words where there is none",
+pageTest(
+  "key E shows the error map of the same plan, or reports why there is none",
   "playing=0",
   async (page) => {
     const slider = await charted(page);
-    const point = await first_stop(page, slider);
+    const point = await firstStop(page, slider);
     await page.route("**/*view=bound*", (route) =>
       route.fulfill({ status: 422, json: { title: "No such view", detail: "This service draws no bounds." } }),
     );
-    const asked = page.waitForRequest(/view=bound/);
+    const requested = page.waitForRequest(/view=bound/);
     await page.keyboard.down("e");
-    assert.ok((await asked).url().endsWith(`${point}&view=bound`), (await asked).url());
+    assert.ok((await requested).url().endsWith(`${point}&view=bound`), (await requested).url());
     await eventually("the words", async () => /No such view.*draws no bounds/.test(await text(page, "stop-note")));
     await page.keyboard.up("e");
     assert.equal(await shown(page), point);
@@ -248,48 +272,48 @@ page_test(
   { ...still, expected: /status of 422/ },
 );
 
-page_test(
-  "a plan that is used is in the link, which gives the same picture again",
-  "playing=0",
+pageTest(
+  "the link keeps a used plan and reproduces its picture",
+  "playing=0&az=30",
   async (page, context) => {
     const slider = await charted(page);
     await slider.press("Home");
     await slider.press("ArrowRight");
     const line = await text(page, "stop-line");
-    await page.getByRole("button", { name: "Use" }).click();
+    await page.getByRole("button", { name: "Use these settings" }).click();
     await page.locator("#overlay").waitFor({ state: "hidden" });
-    await eventually("the plan's picture", async () => /^Plan: /.test(await text(page, "told")));
+    await eventually("the plan's picture", async () => /^Settings: /.test(await text(page, "budget-status")));
     const digest = await rest(page);
-    const { plan } = await hash_of(page);
+    const { plan } = await hashOf(page);
     const wanted = new URLSearchParams(plan);
     assert.equal(wanted.get("samples"), /(\d+) sample/.exec(line)[1]);
     assert.equal(wanted.get("width"), null);
-    assert.match(await text(page, "told"), /error (unknown, because of|≤)/);
+    assert.match(await text(page, "budget-status"), /error (unknown because of|≤)/);
     const link = await page.evaluate(() => location.href);
     const other = await context.newPage();
     await other.goto(link);
-    await eventually("the plan's words", async () => /^Plan: /.test(await text(other, "told")));
+    await eventually("the plan's words", async () => /^Settings: /.test(await text(other, "budget-status")));
     assert.equal(await rest(other), digest);
-    assert.deepEqual(await axe_violations(other), []);
-    await other.getByRole("button", { name: "Back to automatic" }).click();
-    await eventually("no plan", async () => (await hash_of(other)).plan === undefined);
+    assert.deepEqual(await axeViolations(other), []);
+    await other.getByRole("button", { name: "Reset to automatic" }).click();
+    await eventually("no plan", async () => (await hashOf(other)).plan === undefined);
     await eventually("another picture", async () => (await rest(other)) !== digest);
-    assert.equal(await text(other, "told"), "");
+    assert.equal(await text(other, "budget-status"), "");
   },
   still,
 );
 
-page_test(
-  "the chart's drawing has its stops as buttons",
+pageTest(
+  "the stops of the chart are buttons in its drawing",
   "playing=0",
   async (page) => {
     const slider = await charted(page);
     await page.locator("#show-chart").click();
-    const dialog = page.getByRole("dialog", { name: "Chart of speed against accuracy" });
+    const dialog = page.getByRole("dialog", { name: "Speed and accuracy chart" });
     const marks = dialog.locator(".drawing [role=button]");
     const lines = await marks.evaluateAll((all) => all.map((each) => each.getAttribute("aria-label")));
-    for (const line of lines) assert.match(line, line_shape);
-    assert.deepEqual(await axe_violations(page), []);
+    for (const line of lines) assert.match(line, lineShape);
+    assert.deepEqual(await axeViolations(page), []);
     await marks.first().focus();
     await page.keyboard.press("Enter");
     await dialog.waitFor({ state: "hidden" });
@@ -302,8 +326,8 @@ page_test(
   still,
 );
 
-page_test(
-  "a budget that is missed says so and why, and its picture can be taken along",
+pageTest(
+  "a missed budget reports the reason, and its picture can be downloaded",
   "scene=paper&playing=0",
   async (page) => {
     await page.route("**/frame.png?*error=*", async (route) => {
@@ -311,54 +335,60 @@ page_test(
       const headers = {
         ...response.headers(),
         "orrery-budget": 'met=?0;error=0.005;error-met=?0;reason="8 bits can prove no less"',
-        "orrery-error-bound": 'rms=unknown;kind=unknown;max=unknown;because="caustics";known=0.0031;known-kind=estimated',
+        "orrery-error-bound":
+          'rms=unknown;kind=unknown;max=unknown;because="caustics";known=0.0031;known-kind=estimated',
       };
       return route.fulfill({ response, headers });
     });
     await rest(page);
     await page.getByRole("button", { name: "0.5 % error" }).click();
-    await eventually("the budget", async () => /^Limit missed: 8 bits can prove no less/.test(await text(page, "told")));
-    assert.match(await text(page, "told"), /error unknown, because of caustics; the rest ≤ 0\.0031 \(95 %, estimated\)$/);
-    assert.equal(await page.locator("#told.missed").count(), 1);
-    const rgb = await page.locator("#told").evaluate((each) => getComputedStyle(each).color);
+    await eventually("the budget", async () =>
+      /^Limit missed: 8 bits can prove no less/.test(await text(page, "budget-status")),
+    );
+    assert.match(
+      await text(page, "budget-status"),
+      /error unknown because of caustics; other errors ≤ 0\.0031 \(95 % confidence\)$/,
+    );
+    assert.equal(await page.locator("#budget-status.missed").count(), 1);
+    const rgb = await page.locator("#budget-status").evaluate((each) => getComputedStyle(each).color);
     assert.equal(rgb, "rgb(138, 82, 0)", "amber");
-    assert.equal((await hash_of(page)).error, "0.005");
-    assert.deepEqual(await axe_violations(page), []);
+    assert.equal((await hashOf(page)).error, "0.005");
+    assert.deepEqual(await axeViolations(page), []);
     await page.locator("#download").hover();
     const link = await page.locator("#download").getAttribute("href");
     assert.equal(query(link).get("error"), null, "the plan that it came to");
     await page.getByRole("button", { name: "0.5 % error" }).click();
-    await eventually("no budget", async () => (await text(page, "told")) === "");
-    assert.equal((await hash_of(page)).error, undefined);
+    await eventually("no budget", async () => (await text(page, "budget-status")) === "");
+    assert.equal((await hashOf(page)).error, undefined);
   },
   still,
 );
 
-page_test(
-  "a budget of seconds is in the link and says what it took",
+pageTest(
+  "the link keeps a time budget, and the page reports the time taken",
   "playing=0&seconds=0.3",
   async (page) => {
-    await eventually("the budget", async () => /^Limit (kept|missed): /.test(await text(page, "told")));
-    assert.match(await text(page, "told"), /error (unknown, because of|≤)/);
+    await eventually("the budget", async () => /^Limit (met|missed): /.test(await text(page, "budget-status")));
+    assert.match(await text(page, "budget-status"), /error (unknown because of|≤)/);
     await rest(page);
-    assert.ok((await canvas_digest(page)).length > 0);
-    const told = await text(page, "told");
+    assert.ok((await canvasDigest(page)).length > 0);
+    const status = await text(page, "budget-status");
     await page.evaluate(() => dispatchEvent(new Event("online")));
     await rest(page);
-    assert.equal(await text(page, "told"), told, "of the same picture");
+    assert.equal(await text(page, "budget-status"), status, "of the same picture");
     await page.locator("#stage").hover();
     await page.mouse.wheel(0, 100);
-    await eventually("nothing of another view", async () => (await text(page, "told")) === "");
-    await eventually("its own", async () => (await text(page, "told")) !== "");
+    await eventually("nothing of another view", async () => (await text(page, "budget-status")) === "");
+    await eventually("its own", async () => (await text(page, "budget-status")) !== "");
     await page.getByRole("button", { name: "2 s" }).click();
-    await eventually("another budget", async () => (await hash_of(page)).seconds === "2");
+    await eventually("another budget", async () => (await hashOf(page)).seconds === "2");
     assert.equal(await page.getByRole("button", { name: "2 s" }).getAttribute("aria-pressed"), "true");
   },
   still,
 );
 
-page_test(
-  "a chart that fails says why, and one that is cancelled leaves the offer",
+pageTest(
+  "a failed chart reports the reason, and a cancelled one can be made again",
   "playing=0",
   async (page) => {
     await rest(page);
@@ -367,12 +397,14 @@ page_test(
     );
     const make = page.locator("#make-chart");
     await make.click();
-    await eventually("the words", async () => /No chart: Too many jobs\. 2 jobs/.test(await text(page, "stop-note")));
+    await eventually("the words", async () =>
+      /The chart failed: Too many jobs\. 2 jobs/.test(await text(page, "stop-note")),
+    );
     await page.unroute("**/charts");
     await page.route("**/v1/jobs/*/events", () => {}); // never responds
     await make.click();
-    await page.getByRole("button", { name: "Cancel the chart" }).click();
-    await page.getByRole("button", { name: "Chart speed against accuracy" }).waitFor();
+    await page.getByRole("button", { name: "Cancel chart" }).click();
+    await page.getByRole("button", { name: "Make speed and accuracy chart" }).waitFor();
   },
   { ...still, expected: /status of 429/ },
 );

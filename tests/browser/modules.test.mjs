@@ -4,20 +4,20 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { near } from "./support.mjs";
-import { load } from "./web_modules.mjs";
+import { load } from "./web-modules.mjs";
 
-const { persist, wake_all } = await load("backoff.js");
-const { OrbitCamera, elevation_of } = await load("camera.js");
-const { floor_height } = await load("floor.js");
-const { locate, offset_of, place_of } = await load("pointer.js");
+const { withRetries, wakeAll } = await load("backoff.js");
+const { OrbitCamera, elevationOf } = await load("camera.js");
+const { floorHeight } = await load("floor.js");
+const { locate, offsetOf, placeOf } = await load("pointer.js");
 const { pretty } = await load("scenes.js");
-const { progress_text } = await load("progress.js");
-const { picture_size, within } = await load("size.js");
-const { format_hash, parse_hash } = await load("state.js");
-const { FrameParser, read_frames } = await load("stream.js");
-const { curl_command, frame_url, job_body } = await load("urls.js");
+const { progressText } = await load("progress.js");
+const { pictureSize, within } = await load("size.js");
+const { formatHash, parseHash } = await load("link.js");
+const { FrameParser, readFrames } = await load("stream.js");
+const { curlCommand, frameUrl, jobBody } = await load("urls.js");
 
-function frame_bytes(header, png) {
+function frameBytes(header, png) {
   const text = new TextEncoder().encode(JSON.stringify({ ...header, bytes: png.length }));
   const bytes = new Uint8Array(4 + text.length + png.length);
   new DataView(bytes.buffer).setUint32(0, text.length);
@@ -26,9 +26,9 @@ function frame_bytes(header, png) {
   return bytes;
 }
 
-test("frames come out whole however the bytes are cut", () => {
-  const first = frame_bytes({ frame: 0 }, Uint8Array.of(1, 2, 3));
-  const second = frame_bytes({ frame: 1 }, Uint8Array.of(4, 5, 6, 7));
+test("FrameParser returns whole frames for every division into chunks", () => {
+  const first = frameBytes({ frame: 0 }, Uint8Array.of(1, 2, 3));
+  const second = frameBytes({ frame: 1 }, Uint8Array.of(4, 5, 6, 7));
   const all = Uint8Array.of(...first, ...second);
   for (let piece = 1; piece <= all.length; piece += 1) {
     const parser = new FrameParser();
@@ -40,45 +40,45 @@ test("frames come out whole however the bytes are cut", () => {
       `pieces of ${piece}`,
     );
     assert.deepEqual([...frames[0].png, ...frames[1].png], [1, 2, 3, 4, 5, 6, 7], `pieces of ${piece}`);
-    assert.equal(parser.inside_frame, false);
+    assert.equal(parser.insideFrame, false);
   }
 });
 
-test("bytes that are no frames are refused", () => {
-  assert.throws(() => new FrameParser().push(Uint8Array.of(255, 255, 255, 255, 0)), /not made of frames/);
-  assert.throws(() => new FrameParser().push(Uint8Array.of(0, 0, 0, 2, 123, 125)), /not made of frames/);
+test("FrameParser rejects malformed bytes", () => {
+  assert.throws(() => new FrameParser().push(Uint8Array.of(255, 255, 255, 255, 0)), /not a frame/);
+  assert.throws(() => new FrameParser().push(Uint8Array.of(0, 0, 0, 2, 123, 125)), /not a frame/);
 });
 
-test("a stream that breaks off inside a frame is a failure worth a new attempt", async () => {
-  const bytes = frame_bytes({ frame: 0 }, Uint8Array.of(1, 2, 3));
+test("a stream truncated inside a frame is a retryable error", async () => {
+  const bytes = frameBytes({ frame: 0 }, Uint8Array.of(1, 2, 3));
   const body = new Blob([bytes, bytes.slice(0, -1)]).stream();
   const seen = [];
   await assert.rejects(
     async () => {
-      for await (const frame of read_frames(body)) seen.push(frame);
+      for await (const frame of readFrames(body)) seen.push(frame);
     },
     (error) => error.retryable,
   );
   assert.equal(seen.length, 1);
 });
 
-const kPixels = 600; // height of the picture in these tests
+const PIXELS = 600; // height of the picture in these tests
 
 // Lets `camera` glide at `rate` frames per second. Returns the frames until it rests. Fails after ten
 // seconds.
 function glide(camera, rate = 60, each = () => {}) {
   for (let frames = 1; frames <= 10 * rate; frames += 1) {
-    if (!camera.step(1 / rate, kPixels)) return frames;
+    if (!camera.step(1 / rate, PIXELS)) return frames;
     each();
   }
   return assert.fail("the glide does not end");
 }
 
-test("the camera glides to its goal and stops there", () => {
+test("the camera glides to its goal and stops", () => {
   const camera = new OrbitCamera();
   camera.rotate(90, 0);
-  assert.equal(camera.step(1 / 60, kPixels), true);
-  const pixel = (2 / kPixels) * (180 / Math.PI); // turn that moves the edge of the picture by a pixel
+  assert.equal(camera.step(1 / 60, PIXELS), true);
+  const pixel = (2 / PIXELS) * (180 / Math.PI); // turn that moves the edge of the picture by a pixel
   near(camera.view.azimuth, 4.5 + pixel, 1e-9, "a twentieth of the way, and a pixel");
   camera.rotate(0, 30);
   camera.dolly(0.5);
@@ -86,7 +86,7 @@ test("the camera glides to its goal and stops there", () => {
   assert.deepEqual(camera.view, { azimuth: 90, elevation: 30, distance: 0.5, pan: [0, 0, 0], time: 0 });
 });
 
-test("a glide ends rather than move by less than a pixel a frame", () => {
+test("a glide moves at least a pixel per frame until it ends", () => {
   const moves = {
     turn: (camera) => camera.rotate(36, 0), // a drag over a tenth of the height
     lift: (camera) => camera.rotate(0, 36),
@@ -106,17 +106,17 @@ test("a glide ends rather than move by less than a pixel a frame", () => {
     let before = seen(camera.view);
     const frames = glide(camera, 60, () => {
       const now = seen(camera.view);
-      const pixels = kPixels * Math.max(...now.map((value, at) => Math.abs(value - before[at])));
+      const pixels = PIXELS * Math.max(...now.map((value, at) => Math.abs(value - before[at])));
       assert.ok(pixels >= 1, `${name}: ${pixels} pixels`);
       before = now;
     });
-    const last = kPixels * Math.max(...seen(camera.goal).map((value, at) => Math.abs(value - before[at])));
+    const last = PIXELS * Math.max(...seen(camera.goal).map((value, at) => Math.abs(value - before[at])));
     assert.ok(last <= 1.1, `${name}: jumps by ${last} pixels at its end`);
     assert.ok(frames <= 50, `${name}: ${frames} frames`);
   }
 });
 
-test("a glide takes as long on a display of another rate", () => {
+test("a glide takes the same time at another frame rate", () => {
   const seconds = [60, 144].map((rate) => {
     const camera = new OrbitCamera();
     camera.rotate(36, 0);
@@ -125,10 +125,10 @@ test("a glide takes as long on a display of another rate", () => {
   near(seconds[1], seconds[0], 0.05, "seconds");
 });
 
-test("the view never goes below the floor", () => {
+test("the view stays above the floor", () => {
   const scene = { camera: { eye: [0, 2, 4], look_at: [0, 1, 0] }, floor: 0 };
-  const eye_height = ({ elevation, distance, pan }) => {
-    const own = elevation_of(scene.camera);
+  const eyeHeight = ({ elevation, distance, pan }) => {
+    const own = elevationOf(scene.camera);
     return 1 + pan[1] + distance * Math.hypot(4, 1) * Math.sin(((own + elevation) * Math.PI) / 180);
   };
   const moves = {
@@ -139,63 +139,66 @@ test("the view never goes below the floor", () => {
   };
   for (const [name, move] of Object.entries(moves)) {
     const camera = new OrbitCamera();
-    camera.use_scene_camera(scene.camera, scene.floor);
+    camera.useSceneCamera(scene.camera, scene.floor);
     move(camera);
-    near(eye_height(camera.goal), 0.01 * Math.hypot(4, 1), 1e-9, name);
+    near(eyeHeight(camera.goal), 0.01 * Math.hypot(4, 1), 1e-9, name);
     camera.reset();
     assert.equal(camera.goal.elevation, 0);
-    camera.use_scene_camera(scene.camera);
+    camera.useSceneCamera(scene.camera);
     move(camera);
-    assert.ok(eye_height(camera.goal) < -1, `${name} where there is no floor`);
+    assert.ok(eyeHeight(camera.goal) < -1, `${name} where there is no floor`);
   }
 });
 
-test("a floor is an opaque plane across up, below the scene's own eye", () => {
+test("the floor is an opaque plane perpendicular to up, below the scene's own eye", () => {
   const camera = { eye: [0, 2, 4], look_at: [0, 0, 0], up: [0, 2, 0] };
   const floor = (plane, materials = { stone: { type: "rough" } }) =>
-    floor_height({ materials, objects: [{ type: "plane", point: [5, -1, 0], normal: [0, -3, 0], material: "stone", ...plane }] }, camera);
+    floorHeight(
+      { materials, objects: [{ type: "plane", point: [5, -1, 0], normal: [0, -3, 0], material: "stone", ...plane }] },
+      camera,
+    );
   assert.equal(floor({}), -1);
   assert.equal(floor({ point: [0, 3, 0] }), -Infinity, "a ceiling");
   assert.equal(floor({ normal: [0, 1, 0.1] }), -Infinity, "a slope");
   assert.equal(floor({ type: "disk" }), -Infinity);
   assert.equal(floor({}, { stone: { type: "refractive" } }), -Infinity, "a surface of water");
-  assert.equal(floor_height({}, camera), -Infinity);
+  assert.equal(floorHeight({}, camera), -Infinity);
 });
 
-test("the camera never looks straight along up, wherever the scene's own eye is", () => {
+test("the camera never looks parallel to up", () => {
   const own = { eye: [0, 3, 3], look_at: [0, 0, 0], up: [0, 2, 0] };
-  assert.ok(Math.abs(elevation_of(own) - 45) < 1e-9);
+  assert.ok(Math.abs(elevationOf(own) - 45) < 1e-9);
   const camera = new OrbitCamera();
-  camera.use_scene_camera(own);
+  camera.useSceneCamera(own);
   camera.rotate(0, 1000);
   assert.ok(Math.abs(camera.goal.elevation - 44.9) < 1e-9);
   camera.rotate(0, -1000);
   assert.ok(Math.abs(camera.goal.elevation + 134.9) < 1e-9);
 });
 
-test("the camera pans in its picture's plane, as far as its picture shows", () => {
-  const close_to = (actual, expected) =>
+test("a pan by a fraction of the height moves the target by that fraction of the shown height", () => {
+  const closeTo = (actual, expected) =>
     actual.forEach((value, axis) => assert.ok(Math.abs(value - expected[axis]) < 1e-12, `${actual} ${expected}`));
   const own = { type: "perspective", eye: [0, 1, 4], look_at: [0, 1, 0], up: [0, 3, 0], fov_degrees: 90 };
   const panned = (view, right, up, fov) => {
     const camera = new OrbitCamera();
-    camera.use_scene_camera({ ...own, ...view.camera });
+    camera.useSceneCamera({ ...own, ...view.camera });
     camera.jump({ azimuth: 0, elevation: 0, distance: 1, ...view });
     camera.pan(right, up, fov);
     return camera.goal.pan;
   };
-  close_to(panned({}, 1, 0.5), [8, 4, 0]); // 2 * 4 m * tan 45 high
-  close_to(panned({ distance: 2 }, 0, 1), [0, 16, 0]);
-  close_to(panned({ azimuth: 90 }, 1, 0), [0, 0, -8]); // the eye is at +x, its right is -z
-  close_to(panned({ elevation: 60 }, 0, 1), [0, 4, -4 * Math.sqrt(3)]);
+  closeTo(panned({}, 1, 0.5), [8, 4, 0]); // 2 * 4 m * tan 45 high
+  closeTo(panned({ distance: 2 }, 0, 1), [0, 16, 0]);
+  closeTo(panned({ azimuth: 90 }, 1, 0), [0, 0, -8]); // the eye is at +x, its right is -z
+  closeTo(panned({ elevation: 60 }, 0, 1), [0, 4, -4 * Math.sqrt(3)]);
   const lifted = { eye: [0, 5, 4] }; // 45 degrees up, 4 * sqrt(2) m away
-  close_to(panned({ camera: lifted }, 0, 1), [0, 8, -8]);
-  close_to(panned({ camera: lifted, azimuth: 90, elevation: -45 }, 0.5, 0.25), [0, 2 * Math.SQRT2, -4 * Math.SQRT2]);
-  close_to(panned({}, 0, 1, 2 * (Math.atan(0.5) * 180) / Math.PI), [0, 4, 0]);
-  close_to(panned({ camera: { type: "orthographic", height: 3 }, distance: 2 }, 1, 0), [6, 0, 0]);
+  closeTo(panned({ camera: lifted }, 0, 1), [0, 8, -8]);
+  closeTo(panned({ camera: lifted, azimuth: 90, elevation: -45 }, 0.5, 0.25), [0, 2 * Math.SQRT2, -4 * Math.SQRT2]);
+  closeTo(panned({}, 0, 1, (2 * (Math.atan(0.5) * 180)) / Math.PI), [0, 4, 0]);
+  closeTo(panned({ camera: { type: "orthographic", height: 3 }, distance: 2 }, 1, 0), [6, 0, 0]);
 });
 
-test("a glide on its way changes nothing of how far a pan goes", () => {
+test("a pan during a glide moves by the scale of the goal", () => {
   const camera = new OrbitCamera();
   camera.pan(1, 0);
   const [metres] = camera.goal.pan;
@@ -205,29 +208,29 @@ test("a glide on its way changes nothing of how far a pan goes", () => {
   assert.equal(camera.dolly(0.01), 0.04, "from half to a fiftieth, the nearest");
 });
 
-test("the camera glides to where it is panned to, and reset takes it back", () => {
+test("the camera glides to a pan and back on reset", () => {
   const camera = new OrbitCamera();
   camera.pan(1, 0);
   const goal = camera.goal.pan[0];
-  assert.equal(camera.step(1 / 60, kPixels), true);
-  near(camera.view.pan[0] / goal, 1 / 20 + 1 / kPixels, 1e-9, "a twentieth of the way, and a pixel");
+  assert.equal(camera.step(1 / 60, PIXELS), true);
+  near(camera.view.pan[0] / goal, 1 / 20 + 1 / PIXELS, 1e-9, "a twentieth of the way, and a pixel");
   glide(camera);
   assert.equal(camera.view.pan[0], goal);
   camera.reset();
-  assert.equal(camera.step(1 / 60, kPixels), true);
+  assert.equal(camera.step(1 / 60, PIXELS), true);
   glide(camera);
   assert.deepEqual(camera.view.pan, [0, 0, 0]);
 });
 
-test("reset takes the short way round", () => {
+test("reset turns by the shorter way", () => {
   const camera = new OrbitCamera();
   camera.jump({ azimuth: 350, elevation: 10, distance: 2 });
   camera.reset();
-  camera.step(1 / 60, kPixels);
+  camera.step(1 / 60, PIXELS);
   assert.ok(camera.view.azimuth > 350);
 });
 
-test("a JSON pointer leads to its place in the text", () => {
+test("locate() finds the place of a JSON Pointer", () => {
   const text = '{ "a/b": [1, {"x": "}]\\"", "radius": -2}], "radius": 7, "list": [[], {}, 3] }';
   const at = (pointer, key) => text.slice(...locate(text, pointer, key));
   assert.equal(at("/a~1b/1/radius"), "-2");
@@ -241,45 +244,38 @@ test("a JSON pointer leads to its place in the text", () => {
   assert.equal(locate("[".repeat(1e5), "/0/0").length, 2);
 });
 
-test("a line and a column lead to their place in the text", () => {
-  assert.equal(offset_of("ab\ncd\n", 2, 2), 4);
-  assert.equal(offset_of("ab\ncd\n", 1, 99), 2);
-  assert.equal(offset_of("ab", 9, 1), 0);
+test("offsetOf() and placeOf() are inverses", () => {
+  assert.equal(offsetOf("ab\ncd\n", 2, 2), 4);
+  assert.equal(offsetOf("ab\ncd\n", 1, 99), 2);
+  assert.equal(offsetOf("ab", 9, 1), 0);
   const text = "\nab\n\ncd";
   for (let at = 0; at <= text.length; at += 1) {
-    const { line, column } = place_of(text, at);
-    assert.equal(offset_of(text, line, column), at);
+    const { line, column } = placeOf(text, at);
+    assert.equal(offsetOf(text, line, column), at);
   }
 });
 
-test("a link restores what it was made from, and nonsense in it is ignored", () => {
-  const state = {
-    ...parse_hash(""),
-    scene: "mirror",
-    az: 12.5,
-    el: -3,
-    dist: 0.5,
-    pan: [0.5, -1e-7, 12345],
-    t: 1.25,
-    playing: false,
-    technique: "raycast",
-    samples: 16,
-  };
-  assert.deepEqual(parse_hash(format_hash(state)), state);
-  const odd = parse_hash("#scene=../x&az=abc&speed=1e9&size=9x&samples=-4&el=1e999&pan=1,2,x");
-  assert.deepEqual({ ...odd, speed: 20 }, parse_hash(""));
-  assert.equal(odd.speed, 120);
+test("a hash restores settings and view, and invalid values are ignored", () => {
+  const usual = parseHash("");
+  const settings = { ...usual.settings, ref: "mirror", playing: false, technique: "raycast", samples: 16 };
+  const view = { azimuth: 12.5, elevation: -3, distance: 0.5, pan: [0.5, -1e-7, 12345], time: 1.25 };
+  assert.deepEqual(parseHash(formatHash(settings, view)), { settings, view });
+  assert.equal(formatHash(usual.settings, usual.view), "#scene=paper&az=0&el=0&dist=1&speed=20&playing=1");
+  const odd = parseHash("#scene=../x&az=abc&speed=1e9&size=9x&samples=-4&el=1e999&pan=1,2,x");
+  assert.equal(odd.settings.speed, 120);
+  odd.settings.speed = 20;
+  assert.deepEqual(odd, usual);
 });
 
-test("a picture fits its box and the limits", () => {
+test("a picture fits its box and the limits of the service", () => {
   const scene = { width: 600, height: 600, camera: { type: "perspective", fov_degrees: 90 } };
   const limits = { side: 4096, pixels: 2 ** 24 };
   const size = (more) =>
-    picture_size({
+    pictureSize({
       mode: "fit",
       purpose: "still",
       box: { width: 800, height: 400 },
-      pixel_ratio: 2,
+      pixelRatio: 2,
       scene,
       limits,
       ...more,
@@ -298,7 +294,7 @@ test("a picture fits its box and the limits", () => {
   assert.deepEqual(within({ width: 8192, height: 100 }, 4096, 2 ** 24), { width: 4096, height: 50 });
 });
 
-test("addresses are the same for the same view and safe in a shell", () => {
+test("equal views have equal addresses, and commands are safe in a shell", () => {
   const picture = {
     id: "ab12",
     azimuth: 10.001,
@@ -308,64 +304,64 @@ test("addresses are the same for the same view and safe in a shell", () => {
     height: 40,
     samples: 0,
   };
-  assert.equal(
-    frame_url(picture),
-    "v1/scenes/ab12/frame.png?azimuth=10&elevation=0&distance=1&width=60&height=40",
-  );
-  assert.match(frame_url({ ...picture, pan: [0, 0, 0] }), /distance=1&width/);
-  const panned = new URL(frame_url({ ...picture, pan: [1.23456789, -2e-7, 0] }), "http://host");
+  assert.equal(frameUrl(picture), "v1/scenes/ab12/frame.png?azimuth=10&elevation=0&distance=1&width=60&height=40");
+  assert.match(frameUrl({ ...picture, pan: [0, 0, 0] }), /distance=1&width/);
+  const panned = new URL(frameUrl({ ...picture, pan: [1.23456789, -2e-7, 0] }), "http://host");
   assert.equal(panned.searchParams.get("pan"), "1.23457,-2e-7,0");
   assert.equal(
-    curl_command(picture, "my scene", "http://host:1/"),
+    curlCommand(picture, "my scene", "http://host:1/"),
     "curl -fo my-scene-10-0.png 'http://host:1/v1/scenes/ab12/frame.png?azimuth=10&elevation=0&distance=1&width=60&height=40'",
   );
 });
 
-test("a job is asked for the picture that its address names", () => {
+test("a job body has the options of the picture's address", () => {
   const view = { id: "ab", azimuth: 10.001, elevation: 0, distance: 2, width: 60, height: 40 };
-  assert.deepEqual(JSON.parse(JSON.stringify(job_body({ ...view, samples: 16 }))), {
+  assert.deepEqual(JSON.parse(JSON.stringify(jobBody({ ...view, samples: 16 }))), {
     scene_id: "ab",
     camera: { azimuth_degrees: 10, elevation_degrees: 0, distance: 2 },
     image: { width: 60, height: 40 },
     render: { samples: 16 },
   });
-  const more = { pan: [1, -2, 1e-7], fov: 50, technique: "raycast", moves: true, time: 1.5 };
-  const { camera, render } = job_body({ ...view, ...more, samples: 4 });
+  const more = { pan: [1, -2, 1e-7], fov: 50, technique: "raycast", isAnimated: true, time: 1.5 };
+  const { camera, render } = jobBody({ ...view, ...more, samples: 4 });
   assert.deepEqual([camera.pan, camera.fov_degrees], [[1, -2, 1e-7], 50]);
   assert.deepEqual(render, { samples: 4, technique: "raycast", time: 1.5 });
 });
 
-test("the command takes a token from the environment", () => {
+test("the curl command reads the token from the environment", () => {
   const picture = { id: "ab", azimuth: 0, elevation: 0, distance: 1, width: 6, height: 4 };
-  const command = curl_command(picture, "a", "http://host/", "secret");
+  const command = curlCommand(picture, "a", "http://host/", "secret");
   assert.match(command, /^curl -fo a-0-0\.png -H "Authorization: Bearer \$ORRERY_TOKEN" 'http:/);
   assert.ok(!command.includes("secret"));
 });
 
-test("progress says what was measured, and calls a guess a guess", () => {
+test('progress marks an estimated time with "about"', () => {
   const at = { shown: 16, end: 64 };
-  assert.equal(progress_text({ ...at, part: 0.439, seconds_left: 2.1 }), "16 of 64 samples · 43 % · 3 s left");
-  assert.equal(progress_text({ ...at, part: 0.1 }), "16 of 64 samples · 10 %");
-  assert.equal(progress_text({ ...at, rmse: 0.01234, seconds_left: 2 }), "16 of 64 samples · error 0.012 · about 2 s left");
-  assert.equal(progress_text({ ...at, seconds_left: 2.1 }), "16 of 64 samples · about 3 s left");
-  assert.equal(progress_text({ ...at, seconds_left: NaN }), "16 of 64 samples");
-  assert.equal(progress_text({ ...at, seconds_left: -1 }), "16 of 64 samples", "a guess that came to nothing");
-  assert.equal(progress_text({ ...at, part: 0, seconds_left: 600 }), "16 of 64 samples · 0 % · 10 min left");
-  assert.equal(progress_text({}), "");
+  assert.equal(progressText({ ...at, part: 0.439, secondsLeft: 2.1 }), "16 of 64 samples · 43 % · 3 s left");
+  assert.equal(progressText({ ...at, part: 0.1 }), "16 of 64 samples · 10 %");
+  assert.equal(
+    progressText({ ...at, rmse: 0.01234, secondsLeft: 2 }),
+    "16 of 64 samples · error 0.012 · about 2 s left",
+  );
+  assert.equal(progressText({ ...at, secondsLeft: 2.1 }), "16 of 64 samples · about 3 s left");
+  assert.equal(progressText({ ...at, secondsLeft: NaN }), "16 of 64 samples");
+  assert.equal(progressText({ ...at, secondsLeft: -1 }), "16 of 64 samples", "a guess that came to nothing");
+  assert.equal(progressText({ ...at, part: 0, secondsLeft: 600 }), "16 of 64 samples · 0 % · 10 min left");
+  assert.equal(progressText({}), "");
 });
 
-test("an attempt is repeated while the failure may pass, and no longer", async () => {
-  const failure = (retryable) => Object.assign(new Error("no"), { retryable, retry_after_seconds: 60 });
+test("withRetries() repeats a task after retryable errors only", async () => {
+  const failure = (retryable) => Object.assign(new Error("no"), { retryable, retryAfterSeconds: 60 });
   let attempts = 0;
   const task = async () => {
     attempts += 1;
     if (attempts < 3) throw failure(true);
     return "done";
   };
-  assert.equal(await persist(task, () => setImmediate(wake_all)), "done");
+  assert.equal(await withRetries(task, () => setImmediate(wakeAll)), "done");
   assert.equal(attempts, 3);
   await assert.rejects(
-    persist(
+    withRetries(
       async () => {
         throw failure(false);
       },
@@ -375,7 +371,7 @@ test("an attempt is repeated while the failure may pass, and no longer", async (
   );
 });
 
-test("canonical JSON is laid out for reading and stays the same value", () => {
+test("pretty() keeps the value and puts lists of numbers on one line", () => {
   const value = {
     eye: [0, -1.5, 2e-7],
     names: ["a", "b"],

@@ -3,21 +3,21 @@
 
 import assert from "node:assert/strict";
 import { after } from "node:test";
-import { charted, drag, eventually, hash_of, page_tests, quick_charts, rest, start_both } from "./support.mjs";
+import { charted, drag, eventually, hashOf, pageTests, quickCharts, rest, startBoth } from "./support.mjs";
 
-const { daemon, browser } = await start_both(after);
-const page_test = page_tests(browser, daemon);
+const { daemon, browser } = await startBoth(after);
+const pageTest = pageTests(browser, daemon);
 
 const still = { reducedMotion: "reduce" };
 const text = (page, id) => page.locator(`#${id}`).textContent();
 
-page_test(
-  "what the page has to say lies over the pictures of stops, and an orbit takes their place",
+pageTest(
+  "messages are above the overlay, and an orbit hides the overlay",
   "playing=0",
   async (page) => {
     await charted(page);
     for (const id of ["notice", "stage-problem", "hint"]) {
-      const on_top = await page.evaluate((name) => {
+      const onTop = await page.evaluate((name) => {
         document.getElementById("overlay").style.pointerEvents = "auto"; // lets elementFromPoint() hit it
         const part = document.getElementById(name);
         Object.assign(part.style, { pointerEvents: "auto", minHeight: "20px" });
@@ -27,17 +27,17 @@ page_test(
         part.hidden = true;
         return hit;
       }, id);
-      assert.ok(on_top, id);
+      assert.ok(onTop, id);
     }
     await page.locator("#play").click();
     await page.locator("#overlay").waitFor({ state: "hidden" });
-    await eventually("frames", async () => Number((await hash_of(page)).az) > 0);
+    await eventually("frames", async () => Number((await hashOf(page)).az) > 0);
   },
   still,
 );
 
-page_test(
-  "a link to another technique or scene takes the chart and its pictures away",
+pageTest(
+  "a link to another technique or scene drops the chart and its overlay",
   "playing=0",
   async (page) => {
     await charted(page);
@@ -54,8 +54,8 @@ page_test(
   still,
 );
 
-page_test(
-  "R and E are letters of the list of scenes, and mean nothing behind a dialog",
+pageTest(
+  "keys R and E do nothing in the gallery and behind a dialog",
   "playing=0",
   async (page) => {
     await charted(page);
@@ -67,18 +67,26 @@ page_test(
     };
     assert.equal(await held("e", "bound"), "true");
     await page.locator('#gallery [tabindex="0"]').focus();
-    for (const [key, id] of [["e", "bound"], ["r", "reference"]]) assert.equal(await held(key, id), "false");
+    for (const [key, id] of [
+      ["e", "bound"],
+      ["r", "reference"],
+    ])
+      assert.equal(await held(key, id), "false");
     await page.locator("#show-chart").click();
-    for (const [key, id] of [["e", "bound"], ["r", "reference"]]) assert.equal(await held(key, id), "false");
+    for (const [key, id] of [
+      ["e", "bound"],
+      ["r", "reference"],
+    ])
+      assert.equal(await held(key, id), "false");
   },
   still,
 );
 
-page_test(
-  "a chart leaves the focus to who writes meanwhile",
+pageTest(
+  "a finished chart leaves the focus in the editor",
   "playing=0",
   async (page) => {
-    await quick_charts(page);
+    await quickCharts(page);
     await rest(page);
     await page.locator("#tab-json").click();
     await page.locator("#text").focus();
@@ -89,23 +97,19 @@ page_test(
   still,
 );
 
-page_test(
-  "an orbit keeps no budget, and ends where one is chosen",
-  "seconds=0.3&speed=1",
-  async (page) => {
-    await drag(page, 50, 0, async () => {
-      await rest(page);
-      assert.equal(await text(page, "told"), "");
-    });
-    await page.getByRole("button", { name: "2 s" }).click();
-    await eventually("the budget", async () => /^Limit (kept|missed): /.test(await text(page, "told")));
-    const { playing, seconds } = await hash_of(page);
-    assert.deepEqual([playing, seconds], ["0", "2"]);
-  },
-);
+pageTest("an orbit ignores budgets, and choosing one pauses it", "seconds=0.3&speed=1", async (page) => {
+  await drag(page, 50, 0, async () => {
+    await rest(page);
+    assert.equal(await text(page, "budget-status"), "");
+  });
+  await page.getByRole("button", { name: "2 s" }).click();
+  await eventually("the budget", async () => /^Limit (met|missed): /.test(await text(page, "budget-status")));
+  const { playing, seconds } = await hashOf(page);
+  assert.deepEqual([playing, seconds], ["0", "2"]);
+});
 
-page_test(
-  "before a picture is made to its budget, the bound is that of the one without",
+pageTest(
+  "until a budgeted picture is rendered, the error map is that of the picture without budget",
   "playing=0",
   async (page) => {
     await rest(page);

@@ -3,19 +3,10 @@
 
 import assert from "node:assert/strict";
 import { after } from "node:test";
-import {
-  drag,
-  eventually,
-  hash_of,
-  middle,
-  near,
-  page_tests,
-  rest,
-  start_both,
-} from "./support.mjs";
+import { drag, eventually, hashOf, middle, near, pageTests, rest, startBoth } from "./support.mjs";
 
-const { daemon, browser } = await start_both(after);
-const page_test = page_tests(browser, daemon);
+const { daemon, browser } = await startBoth(after);
+const pageTest = pageTests(browser, daemon);
 
 // Scene with a small white ball at the look-at point, on black.
 const white = [1, 1, 1];
@@ -30,7 +21,7 @@ const ball = (camera) =>
     objects: [{ type: "sphere", center: [1, 2, 3], radius: 0.1, material: "chalk" }],
   });
 
-async function post_ball(camera) {
+async function postBall(camera) {
   const headers = { "Content-Type": "application/json" };
   const response = await fetch(`${daemon.url}v1/scenes`, { method: "POST", headers, body: ball(camera) });
   assert.ok(response.ok, await response.clone().text());
@@ -38,7 +29,7 @@ async function post_ball(camera) {
 }
 
 // Returns the position of the ball on the stage, in pixels from its middle.
-async function ball_at(page) {
+async function ballAt(page) {
   await rest(page);
   return page.evaluate(() => {
     const canvas = document.getElementById("canvas");
@@ -54,28 +45,28 @@ async function ball_at(page) {
 }
 
 async function at(page, x, y, what) {
-  const ball = await ball_at(page);
+  const ball = await ballAt(page);
   near(ball.x, x, 1.5, `${what}, across`);
   near(ball.y, y, 1.5, `${what}, down`);
 }
 
-async function open_ball(page, camera, view) {
-  const id = await post_ball(camera);
+async function openBall(page, camera, view) {
+  const id = await postBall(camera);
   await page.evaluate((hash) => (location.hash = hash), `scene=${id}&playing=0&samples=1&${view}`);
-  await eventually("the ball", async () => (await hash_of(page)).scene === id);
-  await opened_ball(page);
+  await eventually("the ball", async () => (await hashOf(page)).scene === id);
+  await openedBall(page);
 }
 
-const opened_ball = (page) => page.waitForFunction(() => document.title.startsWith("Your scene"));
+const openedBall = (page) => page.waitForFunction(() => document.title.startsWith("Untitled scene"));
 
 const still = { reducedMotion: "reduce" };
 
-page_test(
-  "a drag with the right button, shift or ctrl moves what is looked at with the pointer",
+pageTest(
+  "a drag with the right button, Shift or Ctrl pans with the pointer",
   "playing=0",
   async (page) => {
     await rest(page);
-    await open_ball(page, {}, "az=50&el=20&dist=1.5");
+    await openBall(page, {}, "az=50&el=20&dist=1.5");
     await at(page, 0, 0, "at first");
     await drag(page, 80, 40, undefined, "right");
     await at(page, 80, 40, "right button");
@@ -86,7 +77,7 @@ page_test(
       await at(page, 20, 70, key);
       await drag(page, 60, -30, undefined, "right");
     }
-    const { pan, az } = await hash_of(page);
+    const { pan, az } = await hashOf(page);
     assert.match(pan, /^-?[\d.e-]+,-?[\d.e-]+,-?[\d.e-]+$/);
     assert.equal(az, "50", "a pan does not turn");
     const link = await page.locator("#download").evaluate((link) => {
@@ -102,37 +93,37 @@ page_test(
     const { x, y } = await middle(page);
     await page.mouse.dblclick(x, y);
     await at(page, 0, 0, "reset");
-    assert.equal((await hash_of(page)).pan, undefined);
+    assert.equal((await hashOf(page)).pan, undefined);
   },
   still,
 );
 
-page_test(
-  "an orthographic view pans as far as the pointer, too, and back undoes nothing of it",
+pageTest(
+  "an orthographic view pans with the pointer, and Back restores the pan",
   "playing=0",
   async (page) => {
     await rest(page);
-    await open_ball(page, { type: "orthographic", height: 4 }, "dist=0.5");
+    await openBall(page, { type: "orthographic", height: 4 }, "dist=0.5");
     await drag(page, -50, 90, undefined, "right");
     await at(page, -50, 90, "right button");
-    const panned = await hash_of(page);
+    const panned = await hashOf(page);
     await page.locator("#gallery button").nth(1).click();
     await rest(page);
-    assert.equal((await hash_of(page)).pan, undefined, "another scene starts from its own view");
+    assert.equal((await hashOf(page)).pan, undefined, "another scene starts from its own view");
     await page.goBack();
-    await opened_ball(page);
-    assert.equal((await hash_of(page)).pan, panned.pan);
+    await openedBall(page);
+    assert.equal((await hashOf(page)).pan, panned.pan);
     await at(page, -50, 90, "after going back");
   },
   still,
 );
 
-page_test(
-  "ctrl and arrows pan, the button makes plain drags and arrows pan",
+pageTest(
+  "Ctrl+arrow pans, and pan mode makes plain drags and arrows pan",
   "playing=0",
   async (page) => {
     await rest(page);
-    await open_ball(page, {}, "");
+    await openBall(page, {}, "");
     const { height } = await middle(page);
     await page.locator("#stage").focus();
     await page.keyboard.press("Control+ArrowRight");
@@ -145,7 +136,7 @@ page_test(
     assert.equal(await page.locator("#pan").getAttribute("aria-pressed"), "true");
     await drag(page, 70, -20);
     await at(page, 70, -20, "drag");
-    await page.getByRole("button", { name: "Move up" }).click();
+    await page.getByRole("button", { name: "Pan up" }).click();
     await at(page, 70, -20 + height / 8, "button");
     await page.locator("#stage").focus();
     await page.keyboard.press("ArrowDown");
@@ -153,17 +144,17 @@ page_test(
     await page.locator("#pan").click();
     await page.getByRole("button", { name: "Turn up" }).click();
     await rest(page);
-    near((await hash_of(page)).el, 22.5, 0.11, "turned again");
+    near((await hashOf(page)).el, 22.5, 0.11, "turned again");
   },
   still,
 );
 
-page_test(
-  "two fingers pan and pinch at once",
+pageTest(
+  "a two-finger drag pans and zooms at once",
   "playing=0",
   async (page, context) => {
     await rest(page);
-    await open_ball(page, {}, "");
+    await openBall(page, {}, "");
     const { x, y } = await middle(page);
     const device = await context.newCDPSession(page);
     const touch = (type, points) =>
@@ -171,17 +162,30 @@ page_test(
         type,
         touchPoints: points.map(([dx, dy], id) => ({ x: x + dx, y: y + dy, id })),
       });
-    await touch("touchStart", [[-40, 0], [40, 0]]);
+    await touch("touchStart", [
+      [-40, 0],
+      [40, 0],
+    ]);
     for (const part of [0.25, 0.5, 0.75, 1])
-      await touch("touchMove", [[-40 + 60 * part, 30 * part], [40 + 60 * part, 30 * part]]);
+      await touch("touchMove", [
+        [-40 + 60 * part, 30 * part],
+        [40 + 60 * part, 30 * part],
+      ]);
     await touch("touchEnd", []);
     await at(page, 60, 30, "moved together");
-    near((await hash_of(page)).dist, 1, 0.002, "distance");
-    await touch("touchStart", [[20, 30], [100, 30]]);
-    for (const gap of [50, 60, 80]) await touch("touchMove", [[60 - gap, 30], [60 + gap, 30]]);
+    near((await hashOf(page)).dist, 1, 0.002, "distance");
+    await touch("touchStart", [
+      [20, 30],
+      [100, 30],
+    ]);
+    for (const gap of [50, 60, 80])
+      await touch("touchMove", [
+        [60 - gap, 30],
+        [60 + gap, 30],
+      ]);
     await touch("touchEnd", []);
     await at(page, 60, 30, "pinched about the ball");
-    near((await hash_of(page)).dist, 0.5, 0.002, "distance after a pinch");
+    near((await hashOf(page)).dist, 0.5, 0.002, "distance after a pinch");
   },
   { hasTouch: true, ...still },
 );

@@ -4,7 +4,7 @@
 // Without --url, starts $TEST_ORRERY, by default build/orrery.
 
 import { parseArgs } from "node:util";
-import { skip_without_browser, start_browser, start_daemon } from "./support.mjs";
+import { skipWithoutBrowser, startBrowser, startDaemon } from "./support.mjs";
 
 const text = (value) => ({ type: "string", default: value });
 const { values, positionals } = parseArgs({
@@ -29,9 +29,9 @@ if (positionals.length !== 1) {
   process.exit(2);
 }
 
-skip_without_browser();
-const daemon = values.url ? null : await start_daemon();
-const browser = await start_browser();
+skipWithoutBrowser();
+const daemon = values.url ? null : await startDaemon();
+const browser = await startBrowser();
 const context = await browser.newContext({
   viewport: { width: Number(values.width), height: Number(values.height) },
   deviceScaleFactor: Number(values.scale),

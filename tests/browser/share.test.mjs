@@ -4,19 +4,19 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { after } from "node:test";
-import { eventually, hold_refinement, page_tests, rest, start_both } from "./support.mjs";
+import { eventually, holdRefinement, pageTests, rest, startBoth } from "./support.mjs";
 
-const { daemon, browser } = await start_both(after);
-const page_test = page_tests(browser, daemon);
+const { daemon, browser } = await startBoth(after);
+const pageTest = pageTests(browser, daemon);
 
 async function download(page) {
   const [file] = await Promise.all([page.waitForEvent("download"), page.locator("#download").click()]);
   return { bytes: readFileSync(await file.path()), name: file.suggestedFilename() };
 }
 
-async function copied_url(page) {
+async function copiedUrl(page) {
   await page.locator("#curl").click();
-  await page.getByText("Copied").waitFor();
+  await page.locator("#curl", { hasText: "Copied" }).waitFor();
   const command = await page.evaluate(() => navigator.clipboard.readText());
   const [, url] = /^curl -fo \S+\.png '([^']+)'$/.exec(command) ?? assert.fail(command);
   return url;
@@ -35,8 +35,8 @@ const shows = (page, png) =>
     return canvas.width === other.width && a.length === b.length && a.every((value, at) => value === b[at]);
   }, png.toString("base64"));
 
-const samples_of = (url) => new URL(url).searchParams.get("samples");
-const link_of = (page) =>
+const samplesOf = (url) => new URL(url).searchParams.get("samples");
+const linkOf = (page) =>
   page.locator("#download").evaluate((link) => {
     link.dispatchEvent(new Event("focus"));
     return link.href;
@@ -53,17 +53,17 @@ for (const [what, view, name, options] of [
     { viewport: { width: 500, height: 900 } },
   ],
 ]) {
-  page_test(
-    `the refined picture is downloaded and copied, ${what}`,
+  pageTest(
+    `download and curl command yield the refined picture, ${what}`,
     `${view}&playing=0&samples=0`,
     async (page) => {
       await rest(page);
       const file = await download(page);
       assert.equal(file.name, name);
       assert.ok(await shows(page, file.bytes), "the pixels of the canvas");
-      const url = await copied_url(page);
+      const url = await copiedUrl(page);
       assert.ok(url.startsWith(daemon.url));
-      assert.equal(samples_of(url), "64");
+      assert.equal(samplesOf(url), "64");
       const response = await fetch(url);
       assert.equal(response.headers.get("content-type"), "image/png");
       assert.ok(file.bytes.equals(Buffer.from(await response.arrayBuffer())), "the same bytes by the command");
@@ -72,18 +72,18 @@ for (const [what, view, name, options] of [
   );
 }
 
-page_test("what is shown is downloaded while finer pictures are on their way", "playing=0&samples=1", async (page) => {
+pageTest("during refinement, the download is the picture on the stage", "playing=0&samples=1", async (page) => {
   await rest(page);
-  await hold_refinement(page, 4);
+  await holdRefinement(page, 4);
   await page.locator("#samples").selectOption("64");
-  await eventually("4 samples", async () => samples_of(await link_of(page)) === "4");
+  await eventually("4 samples", async () => samplesOf(await linkOf(page)) === "4");
   const { bytes } = await download(page);
   assert.ok(await eventually("its pixels, once it has faded in", () => shows(page, bytes)));
 });
 
-page_test("of a view that moves the picture is downloaded that it will rest with", "samples=16&speed=1", async (page) => {
+pageTest("while the view moves, the download is the picture at rest", "samples=16&speed=1", async (page) => {
   await page.locator('#stage[data-shows="stream"]').waitFor();
-  assert.equal(samples_of(await link_of(page)), "16");
+  assert.equal(samplesOf(await linkOf(page)), "16");
   const ahead = await page.evaluate(() => {
     document.querySelector('[data-do="up"]').click();
     const link = document.getElementById("download");
@@ -93,9 +93,9 @@ page_test("of a view that moves the picture is downloaded that it will rest with
   assert.equal(ahead, "22.5");
 });
 
-page_test("where nothing is shown there is nothing to download", "playing=0&samples=1", async (page) => {
+pageTest("an empty stage has no download", "playing=0&samples=1", async (page) => {
   await rest(page);
   await page.route(/v1\/scenes$/, () => {}); // never responds
   await page.locator('#gallery button[data-name="glass"]').click();
-  assert.equal(await link_of(page), "");
+  assert.equal(await linkOf(page), "");
 });

@@ -8,14 +8,14 @@ import { dirname, join } from "node:path";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
 
-export const kRoot = dirname(dirname(dirname(fileURLToPath(import.meta.url))));
-export const kSkipped = 77;
-const kChromium = process.env.CHROMIUM ?? "/usr/bin/chromium";
-const kStartMs = 600_000;
+export const ROOT = dirname(dirname(dirname(fileURLToPath(import.meta.url))));
+export const SKIPPED = 77;
+const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium";
+const START_TIMEOUT_MS = 600_000;
 const require = createRequire(import.meta.url);
 
-// Returns the path of a package's file in node_modules or NODE_PATH, or null if it is not installed.
-export function package_file(name) {
+// Returns the path of a package's file in nodeModules or NODE_PATH, or null if it is not installed.
+export function packageFile(name) {
   try {
     return require.resolve(name);
   } catch {
@@ -24,31 +24,33 @@ export function package_file(name) {
 }
 
 // Exits with the code for "skipped" if the browser or its driver is missing.
-export function skip_without_browser() {
+export function skipWithoutBrowser() {
   for (const [what, present] of [
-    [kChromium, existsSync(kChromium)],
-    ["playwright-core", package_file("playwright-core")],
+    [CHROMIUM, existsSync(CHROMIUM)],
+    ["playwright-core", packageFile("playwright-core")],
   ]) {
     if (present) continue;
     console.log(`skipped: ${what} is not installed`);
-    process.exit(kSkipped);
+    process.exit(SKIPPED);
   }
 }
 
 // Starts `orrery serve` on `port` (0: a free one). Returns {url, stop()}.
-export async function start_daemon(port = 0) {
-  const program = process.env.TEST_ORRERY ?? join(kRoot, "build/orrery");
-  const child = spawn(program, ["serve", "--port", String(port), "--health-port", "0"], { stdio: ["ignore", "pipe", "pipe"] });
+export async function startDaemon(port = 0) {
+  const program = process.env.TEST_ORRERY ?? join(ROOT, "build/orrery");
+  const child = spawn(program, ["serve", "--port", String(port), "--health-port", "0"], {
+    stdio: ["ignore", "pipe", "pipe"],
+  });
   const gone = new Promise((resolve) => child.once("close", resolve));
   let output = "";
   const url = await new Promise((resolve, reject) => {
     const timer = setTimeout(
-      () => reject(new Error(`no address within ${kStartMs} ms; it said: ${output}`)),
-      kStartMs,
+      () => reject(new Error(`no address within ${START_TIMEOUT_MS} ms; output: ${output}`)),
+      START_TIMEOUT_MS,
     );
     const fail = (why) => {
       clearTimeout(timer);
-      reject(new Error(`${program} ${why}; it said: ${output}`));
+      reject(new Error(`${program} ${why}; output: ${output}`));
     };
     const read = (chunk) => {
       output += chunk;
@@ -75,9 +77,9 @@ export async function start_daemon(port = 0) {
 }
 
 // Starts a Chromium with an empty profile.
-export function start_browser() {
+export function startBrowser() {
   return require("playwright-core").chromium.launch({
-    executablePath: kChromium,
+    executablePath: CHROMIUM,
     args: [
       "--no-sandbox",
       "--disable-gpu",
@@ -93,7 +95,7 @@ export function start_browser() {
 // Opens a page and records its faults: console errors, uncaught exceptions and requests to another origin.
 // `ready`: selector that is visible once the page is open. `before(page)` runs before the page is opened.
 // Returns {page, faults, close()}.
-export async function open_page(browser, url, { ready = "#canvas", before = () => {}, ...options } = {}) {
+export async function openPage(browser, url, { ready = "#canvas", before = () => {}, ...options } = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, ...options });
   context.setDefaultTimeout(600_000); // long enough for a busy machine: only hangs fail
   const page = await context.newPage();
@@ -115,7 +117,7 @@ export async function open_page(browser, url, { ready = "#canvas", before = () =
 }
 
 // Returns size and digest of the picture on the canvas.
-export function canvas_digest(page) {
+export function canvasDigest(page) {
   return page.evaluate(async () => {
     const canvas = document.getElementById("canvas");
     const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
@@ -125,32 +127,32 @@ export function canvas_digest(page) {
 }
 
 // Returns the page's state from its URL hash: {scene, az, el, dist, ...} as strings.
-export async function hash_of(page) {
+export async function hashOf(page) {
   return Object.fromEntries(new URLSearchParams(await page.evaluate(() => location.hash.slice(1))));
 }
 
-// Waits until `probe()` returns a truthy value, and returns it. Throws after `timeout_ms`.
-export async function eventually(what, probe, timeout_ms = 600_000) {
-  for (const start = Date.now(); Date.now() - start < timeout_ms;) {
+// Waits until `probe()` returns a truthy value, and returns it. Throws after `timeoutMs`.
+export async function eventually(what, probe, timeoutMs = 600_000) {
+  for (const start = Date.now(); Date.now() - start < timeoutMs;) {
     const result = await probe();
     if (result) return result;
     await new Promise((resolve) => setTimeout(resolve, 50));
   }
-  throw new Error(`not within ${timeout_ms} ms: ${what}`);
+  throw new Error(`not within ${timeoutMs} ms: ${what}`);
 }
 
 // Waits until the view rests and its finest picture is drawn. Returns the picture's digest.
 export async function rest(page) {
   await page.locator('#stage[data-shows="still"]:not([data-fading])').waitFor();
-  return canvas_digest(page);
+  return canvasDigest(page);
 }
 
 // Starts a daemon and a browser for a test file, and stops them after its tests. `after` is that of
 // node:test.
-export async function start_both(after) {
-  skip_without_browser();
-  const daemon = await start_daemon();
-  const browser = await start_browser();
+export async function startBoth(after) {
+  skipWithoutBrowser();
+  const daemon = await startDaemon();
+  const browser = await startBrowser();
   after(async () => {
     await browser.close();
     await daemon.stop();
@@ -161,11 +163,11 @@ export async function start_both(after) {
 // Returns a function that declares a test. The test opens the page with `hash` and runs `body(page,
 // context)`. It fails on faults that do not match `expected`. Stills have one sample unless the hash sets a
 // number, to be quick.
-export function page_tests(browser, daemon) {
+export function pageTests(browser, daemon) {
   return (name, hash, body, { expected = /^$/, ...options } = {}) =>
     test(name, async () => {
       const view = /playing=0(?!.*samples)/.test(hash) ? `${hash}&samples=1` : hash;
-      const { page, faults, close } = await open_page(browser, `${daemon.url}#${view}`, options);
+      const { page, faults, close } = await openPage(browser, `${daemon.url}#${view}`, options);
       try {
         await body(page, page.context());
         assert.deepEqual(
@@ -179,8 +181,8 @@ export function page_tests(browser, daemon) {
 }
 
 // Returns the violations found by axe-core as texts, [] if axe-core is not installed.
-export async function axe_violations(page) {
-  const axe = package_file("axe-core/axe.min.js");
+export async function axeViolations(page) {
+  const axe = packageFile("axe-core/axe.min.js");
   if (!axe) return [];
   await page.evaluate(readFileSync(axe, "utf8"));
   const { violations } = await page.evaluate(() => globalThis.axe.run());
@@ -188,14 +190,14 @@ export async function axe_violations(page) {
 }
 
 // Makes refinement streams hang after the pass with `samples`. window.signals: their abort signals.
-export async function hold_refinement(page, samples) {
+export async function holdRefinement(page, samples) {
   await page.evaluate((last) => {
-    const real_fetch = window.fetch;
+    const realFetch = window.fetch;
     window.signals = [];
     window.fetch = async (path, options) => {
-      if (!String(path).includes("/refinement?")) return real_fetch(path, options);
+      if (!String(path).includes("/refinement?")) return realFetch(path, options);
       window.signals.push(options.signal);
-      const response = await real_fetch(path, options);
+      const response = await realFetch(path, options);
       const bytes = new Uint8Array(await response.arrayBuffer());
       let at = 0;
       for (let seen = 0; seen < last;) {
@@ -211,7 +213,7 @@ export async function hold_refinement(page, samples) {
 }
 
 // Makes charts render a few small pictures. Appends the request bodies to `seen`.
-export async function quick_charts(page, seen = []) {
+export async function quickCharts(page, seen = []) {
   await page.route("**/charts", (route) => {
     const body = route.request().postDataJSON();
     seen.push(structuredClone(body));
@@ -222,10 +224,10 @@ export async function quick_charts(page, seen = []) {
 
 // Makes a chart. Resolves to the slider, which is at its last stop.
 export async function charted(page) {
-  await quick_charts(page);
+  await quickCharts(page);
   await rest(page);
   await page.locator("#make-chart").click();
-  const slider = page.getByRole("slider", { name: "From fast to accurate" });
+  const slider = page.getByRole("slider", { name: "Settings from fast to accurate" });
   await slider.waitFor({ state: "visible" });
   await page.locator("#overlay").waitFor({ state: "visible" });
   return slider;

@@ -110,11 +110,25 @@ const sphere_of = (number, material) => scene_of(number, material, [sphere(1)], 
 const kSmall = [
   ["the catalog", () => ({ path: "/v1/catalog" })],
   ["the description of the service", () => ({ path: "/openapi.json" })],
-  ["explanations", (n, id) => ({ path: `/v1/scenes/${id}/explain?seed=${n}` }), (n) => scene_of(n, kGlass, shells(12), { depth: 32 })],
+  [
+    "explanations",
+    (n, id) => ({ path: `/v1/scenes/${id}/explain?seed=${n}` }),
+    (n) => scene_of(n, kGlass, shells(12), { depth: 32 }),
+  ],
   ["a long wrong name", (n) => post("/v1/scenes", sphere_of(n, { type: "r".repeat(60_000) }))],
-  ["many wrong names", (n) => post("/v1/scenes", { ...sphere_of(n, kRough), ...Object.fromEntries(Array.from({ length: 4000 }, (_, i) => [`x${i}`, 0])) })],
+  [
+    "many wrong names",
+    (n) =>
+      post("/v1/scenes", {
+        ...sphere_of(n, kRough),
+        ...Object.fromEntries(Array.from({ length: 4000 }, (_, i) => [`x${i}`, 0])),
+      }),
+  ],
   ["shares of many numbers", () => post("/v1/shares", kNumbers)],
-  ["jobs of one pixel", (n) => post("/v1/jobs", { scene: { ...sphere_of(n, kRough), image: { width: 1, height: 1 } } })],
+  [
+    "jobs of one pixel",
+    (n) => post("/v1/jobs", { scene: { ...sphere_of(n, kRough), image: { width: 1, height: 1 } } }),
+  ],
   ["JPEGs of 362 bytes", (n) => put_asset(tiny_jpeg(n))],
   ["JPEGs of many scans", (n) => put_asset(tiny_jpeg(n, 60))],
   ["PNGs of long texts", (n) => put_asset(text_png(n))],
@@ -133,8 +147,18 @@ export const kAttacks = [
   many_of("mirrors, many samples", kMirror, hall, { depth: 32, samples: 4096 }),
   many_of("many lights", kRough, hall, { lights: many_lights, side: 500 }),
   many_of("many lights in glass", kGlass, shells(4), { lights: many_lights, depth: 32 }),
-  many_of("coincident spheres", kRough, Array.from({ length: 900 }, () => sphere(1)), { side: 1000 }),
-  many_of("coincident glass spheres", kGlass, Array.from({ length: 900 }, () => sphere(1)), { depth: 32 }),
+  many_of(
+    "coincident spheres",
+    kRough,
+    Array.from({ length: 900 }, () => sphere(1)),
+    { side: 1000 },
+  ),
+  many_of(
+    "coincident glass spheres",
+    kGlass,
+    Array.from({ length: 900 }, () => sphere(1)),
+    { depth: 32 },
+  ),
   many_of("coincident instances", kRough, [], {
     models: tiny_model,
     instances: coincident_instances,

@@ -4,7 +4,18 @@ import { Client } from "./client.mjs";
 import { kAttacks } from "./attacks.mjs";
 import { FrameReader } from "../daemon.mjs";
 import {
-  memory_bound, mib, ms, outcome, new_picture, p99, pause, percent, process_state, row, tally, with_service,
+  memory_bound,
+  mib,
+  ms,
+  outcome,
+  new_picture,
+  p99,
+  pause,
+  percent,
+  process_state,
+  row,
+  tally,
+  with_service,
 } from "./support.mjs";
 import { once } from "node:events";
 import http from "node:http";
@@ -104,11 +115,26 @@ function rows_of(tries) {
   const bad = tries.flatMap((t) => t.bad);
   const resident = worst_of(tries, (t) => t.resident);
   return [
-    row("small picture p99, worst attack", `<= ${kPicture_ms} ms`, told(picture, ms(picture.picture)), picture.picture <= kPicture_ms),
+    row(
+      "small picture p99, worst attack",
+      `<= ${kPicture_ms} ms`,
+      told(picture, ms(picture.picture)),
+      picture.picture <= kPicture_ms,
+    ),
     row("small pictures refused", "0", bad.length ? tally(bad.map(outcome)) : "0", bad.length === 0),
     row("frames of a viewer, worst attack", ">= 50 %", told(frames, percent(frames.frames)), frames.frames >= 0.5),
-    row("/healthz p99, worst attack", `<= ${kHealth_ms} ms`, told(health, ms(health.health)), health.health <= kHealth_ms),
-    row("memory, most", `<= ${mib(resident.bound)}`, told(resident, mib(resident.resident)), resident.resident <= resident.bound),
+    row(
+      "/healthz p99, worst attack",
+      `<= ${kHealth_ms} ms`,
+      told(health, ms(health.health)),
+      health.health <= kHealth_ms,
+    ),
+    row(
+      "memory, most",
+      `<= ${mib(resident.bound)}`,
+      told(resident, mib(resident.resident)),
+      resident.resident <= resident.bound,
+    ),
   ];
 }
 
@@ -129,7 +155,10 @@ async function run({ seconds }) {
       tries.push(await with_service((service, { paper }) => try_attack(service, paper, one, force, seconds)));
       tell(tries.at(-1));
     }
-  return { rows: rows_of(tries), remark: `${kAttacks.length} attacks, alone, 16 at once from one address and from 8, some 180 at once` };
+  return {
+    rows: rows_of(tries),
+    remark: `${kAttacks.length} attacks, alone, 16 at once from one address and from 8, some 180 at once`,
+  };
 }
 
 export const kBlockade = {

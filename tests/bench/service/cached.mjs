@@ -57,12 +57,7 @@ async function run({ seconds }) {
     const beside = (one) => `${told(one)}, ${(one.rate / icon.rate).toFixed(2)} of the icon's`;
     return {
       rows: [
-        row(
-          "304 to If-None-Match",
-          `>= ${kNotModified}/s`,
-          beside(not_modified),
-          not_modified.rate >= kNotModified,
-        ),
+        row("304 to If-None-Match", `>= ${kNotModified}/s`, beside(not_modified), not_modified.rate >= kNotModified),
         row(
           `the same 64x64 picture, ${first.total - first.body_at} bytes`,
           `>= ${kWhole}/s`,

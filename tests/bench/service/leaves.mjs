@@ -3,7 +3,18 @@
 import { Client, header_of } from "./client.mjs";
 import { put_asset, tiny_jpeg } from "./pictures.mjs";
 import {
-  Gauges, closed_loop, decoders_of, kRendersAtOnce, most, ms, new_picture, p99, pause, row, until, with_service,
+  Gauges,
+  closed_loop,
+  decoders_of,
+  kRendersAtOnce,
+  most,
+  ms,
+  new_picture,
+  p99,
+  pause,
+  row,
+  until,
+  with_service,
 } from "./support.mjs";
 import { cpu_seconds } from "../daemon.mjs";
 
@@ -17,12 +28,7 @@ function report(what, times, target_ms) {
   const worst = most(times);
   if (times.length === 0) return row(what, `all <= ${target_ms} ms`, "nobody left in time", false);
   const measured = lost > 0 ? `${lost} never ended` : `max ${ms(worst)}, p99 ${ms(p99(times))}`;
-  return row(
-    `${what}, ${times.length} times`,
-    `all <= ${target_ms} ms`,
-    measured,
-    lost === 0 && worst <= target_ms,
-  );
+  return row(`${what}, ${times.length} times`, `all <= ${target_ms} ms`, measured, lost === 0 && worst <= target_ms);
 }
 
 // Requests a picture and disconnects after `ready`. Resolves to the milliseconds until the gauges are `done`,

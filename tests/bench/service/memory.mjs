@@ -6,7 +6,19 @@ import { kVictim, open_loop } from "./blockade.mjs";
 import { Client } from "./client.mjs";
 import { many_attributes_exr, put_asset, text_png, tiny_jpeg } from "./pictures.mjs";
 import {
-  Gauges, kLayers, memory_bound, mib, most, ms, new_picture, outcome, p99, pause, process_state, row, tally,
+  Gauges,
+  kLayers,
+  memory_bound,
+  mib,
+  most,
+  ms,
+  new_picture,
+  outcome,
+  p99,
+  pause,
+  process_state,
+  row,
+  tally,
   with_service,
 } from "./support.mjs";
 

@@ -3,8 +3,25 @@
 import { monitorEventLoopDelay } from "node:perf_hooks";
 import { open_loop } from "./open_loop.mjs";
 import {
-  Gauges, closed_loop, kRendersAtOnce, mean, mib, most, ms, new_picture, none_row, outcome, p99, pause,
-  percent, process_state, quantile, row, sparkline, tally, with_service,
+  Gauges,
+  closed_loop,
+  kRendersAtOnce,
+  mean,
+  mib,
+  most,
+  ms,
+  new_picture,
+  none_row,
+  outcome,
+  p99,
+  pause,
+  percent,
+  process_state,
+  quantile,
+  row,
+  sparkline,
+  tally,
+  with_service,
 } from "./support.mjs";
 import { cpu_seconds } from "../daemon.mjs";
 
@@ -117,12 +134,7 @@ function rows_of(peaks, loads) {
       `${ms(p99(times))} (p50 ${ms(quantile(times, 0.5))}, max ${ms(most(times))})`,
       p99(times) <= kRefusal_ms,
     ),
-    row(
-      "resident memory beside that at the first peak",
-      `<= ${percent(kMemory)}`,
-      memory_told,
-      growth <= kMemory,
-    ),
+    row("resident memory beside that at the first peak", `<= ${percent(kMemory)}`, memory_told, growth <= kMemory),
     none_row("connections broken", broken),
   ];
 }
@@ -141,9 +153,7 @@ async function run({ seconds }) {
     await peak_rate(service, scenes, 2); // warm-up
     for (let i = 0; i < kTurns; ++i) {
       peaks.push(await observe(() => peak_rate(service, scenes, Math.max(2, turn_s / 2))));
-      loads.push(
-        await observe(() => open_loop(service.port, kTimes * peaks[i].rate, turn_s, () => picture(scenes))),
-      );
+      loads.push(await observe(() => open_loop(service.port, kTimes * peaks[i].rate, turn_s, () => picture(scenes))));
     }
     gauges.close();
     const sum = (list, key) => mean(list.map((one) => one[key]));

@@ -113,7 +113,12 @@ async function run({ times }) {
   const clean = exits.filter((code) => code === 0).length;
   return {
     rows: [
-      row(`asked while ${times} services were started again`, `>= ${kAnswers}`, answers.length, answers.length >= kAnswers),
+      row(
+        `asked while ${times} services were started again`,
+        `>= ${kAnswers}`,
+        answers.length,
+        answers.length >= kAnswers,
+      ),
       none_row("not answered by a picture", bad),
       row("services that ended with 0", `${times}`, clean, clean === times),
     ],

@@ -2,9 +2,7 @@
 // 0.
 
 import { Client, header_of } from "./client.mjs";
-import {
-  closed_loop, most, ms, new_picture, none_row, outcome, pause, row, tally, with_service,
-} from "./support.mjs";
+import { closed_loop, most, ms, new_picture, none_row, outcome, pause, row, tally, with_service } from "./support.mjs";
 
 const kClients = 32;
 const kGrace_s = 30;

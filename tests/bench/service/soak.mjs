@@ -4,7 +4,17 @@ import { mkdirSync, writeFileSync } from "node:fs";
 import { Client } from "./client.mjs";
 import { acts_on } from "./traffic.mjs";
 import {
-  Gauges, mean, mib, none_row, outcome, pause, percent, process_state, row, sparkline, tally,
+  Gauges,
+  mean,
+  mib,
+  none_row,
+  outcome,
+  pause,
+  percent,
+  process_state,
+  row,
+  sparkline,
+  tally,
   with_service,
 } from "./support.mjs";
 

@@ -47,12 +47,7 @@ function orbits(scenes, port) {
   return async () => {
     let frames = 0;
     const path = `${scenes.paper}/orbit?fps=${5 + number(20)}&frames=60&width=120&height=120`;
-    const response = await send(
-      port,
-      "GET",
-      path,
-      number(2) ? { Accept: "application/x-orrery-frames" } : {},
-    );
+    const response = await send(port, "GET", path, number(2) ? { Accept: "application/x-orrery-frames" } : {});
     const binary = response.headers["content-type"] === "application/x-orrery-frames";
     const reader = new FrameReader(() => ++frames);
     const until = performance.now() + number(2000);
@@ -66,10 +61,7 @@ function orbits(scenes, port) {
 
 const kBad = [
   ["/v1/scenes", { method: "POST", headers: json, body: '{"version": 1, "objects": [' }],
-  [
-    "/v1/scenes",
-    { method: "POST", headers: json, body: '{"version": 1, "objects": [{"type": "ball"}], "rest": 1}' },
-  ],
+  ["/v1/scenes", { method: "POST", headers: json, body: '{"version": 1, "objects": [{"type": "ball"}], "rest": 1}' }],
   ["/v1/scenes/0000", {}],
   ["/v1/nothing/here?x=1", {}],
   ["/v1/scenes", { method: "PATCH" }],
@@ -93,11 +85,7 @@ function assets() {
     const body = `v 0 0 0\nv ${size} 0 0\nv 0 ${size} 0\nf 1 2 3\n`;
     const sha = createHash("sha256").update(body).digest("hex");
     const path = `/v1/assets/${sha}`;
-    return [
-      await client.ask(path, { method: "PUT", body }),
-      await client.ask(path),
-      await client.ask("/favicon.svg"),
-    ];
+    return [await client.ask(path, { method: "PUT", body }), await client.ask(path), await client.ask("/favicon.svg")];
   };
 }
 
@@ -115,12 +103,5 @@ function leaving(scenes) {
 export function acts_on(scenes, port) {
   const watching = Array.from({ length: 3 }, () => orbits(scenes, port));
   const drawing = [pictures(scenes), pictures(scenes), leaving(scenes)];
-  return [
-    scenes_come_and_go(),
-    scenes_come_and_go(),
-    ...drawing,
-    ...watching,
-    assets(),
-    bad_requests(scenes, port),
-  ];
+  return [scenes_come_and_go(), scenes_come_and_go(), ...drawing, ...watching, assets(), bad_requests(scenes, port)];
 }

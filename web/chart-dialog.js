@@ -25,7 +25,7 @@ export class ChartDialog {
     const svg = new DOMParser().parseFromString(drawing, "image/svg+xml").documentElement;
     svg.setAttribute("role", "group");
     const title = svg.querySelector(":scope > title");
-    svg.ariaLabel = title?.textContent ?? "Speed against accuracy";
+    svg.ariaLabel = title?.textContent ?? "Speed and accuracy";
     title?.remove(); // it would hide the titles of the points
     this.#box.replaceChildren(document.importNode(svg, true));
     for (const { index, line } of points) {

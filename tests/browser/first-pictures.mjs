@@ -1,15 +1,15 @@
 #!/usr/bin/env node
 // Prints a Markdown table of the sample scenes: time from the click to the first picture, and frames per
 // second of a drag and of an orbit.
-// first_pictures.mjs [--size 1440x900] [--slow TIMES] [NAME...]
+// firstPictures.mjs [--size 1440x900] [--slow TIMES] [NAME...]
 // --slow: factor by which the browser's processor is slowed down, not the service's.
 
 import { parseArgs } from "node:util";
-import { eventually, open_page, skip_without_browser, start_browser, start_daemon } from "./support.mjs";
-import { drag_for, log_stage, pick, scene_names, slow_down } from "./stage_log.mjs";
+import { eventually, openPage, skipWithoutBrowser, startBrowser, startDaemon } from "./support.mjs";
+import { dragFor, logStage, pick, sceneNames, slowDown } from "./stage-log.mjs";
 
-const kDrag_ms = 2000;
-const kOrbit_ms = 3000;
+const DRAG_MS = 2000;
+const ORBIT_MS = 3000;
 
 const { values, positionals } = parseArgs({
   allowPositionals: true,
@@ -26,29 +26,41 @@ async function measure(page, name) {
   const stage = await page.locator("#stage").evaluate((each) => each.clientWidth);
   const start = await pick(page, name);
   const since = (entry) => (entry ? String(Math.round(entry.at - start)) : "–");
-  await eventually("a picture", () => page.evaluate(() => window.stage_log.some(({ width: pixels }) => pixels > 0)));
-  const log = await page.evaluate(() => window.stage_log);
+  await eventually("a picture", () => page.evaluate(() => window.stageLog.some(({ width: pixels }) => pixels > 0)));
+  const log = await page.evaluate(() => window.stageLog);
   const first = log.find(({ width: pixels }) => pixels > 0);
   const thumbnail = log.find((entry) => entry.thumbnail === `${name}.webp`);
   await page.waitForTimeout(1500); // the orbit settles on its size
   await page.evaluate(() => void (window.pictures = []));
-  await page.waitForTimeout(kOrbit_ms);
+  await page.waitForTimeout(ORBIT_MS);
   const orbit = motion(await page.evaluate(() => window.pictures));
-  await drag_for(page, 500);
-  const drag = motion(await drag_for(page, kDrag_ms));
+  await dragFor(page, 500);
+  const drag = motion(await dragFor(page, DRAG_MS));
   await page.waitForTimeout(300);
   row([name, since(thumbnail), since(first), `${first.width} of ${stage}`, ...drag, ...orbit]);
 }
 
-skip_without_browser();
-const daemon = await start_daemon();
-const browser = await start_browser();
+skipWithoutBrowser();
+const daemon = await startDaemon();
+const browser = await startBrowser();
 try {
-  const { page } = await open_page(browser, `${daemon.url}#scene=paper`, { viewport: { width, height }, before: log_stage });
-  if (Number(values.slow) > 1) await slow_down(page, Number(values.slow));
-  row(["scene", "thumbnail, ms", "first picture, ms", "its width, pixels", "drag, fps", "width", "orbit, fps", "width"]);
+  const { page } = await openPage(browser, `${daemon.url}#scene=paper`, {
+    viewport: { width, height },
+    before: logStage,
+  });
+  if (Number(values.slow) > 1) await slowDown(page, Number(values.slow));
+  row([
+    "scene",
+    "thumbnail, ms",
+    "first picture, ms",
+    "its width, pixels",
+    "drag, fps",
+    "width",
+    "orbit, fps",
+    "width",
+  ]);
   row(["---", "--:", "--:", "--:", "--:", "--:", "--:", "--:"]);
-  for (const name of positionals.length ? positionals : await scene_names(page)) await measure(page, name);
+  for (const name of positionals.length ? positionals : await sceneNames(page)) await measure(page, name);
 } finally {
   await browser.close();
   await daemon.stop();

@@ -1,6 +1,6 @@
 // Button and keyboard key that are active while pressed.
 
-export class Hold {
+export class HoldButton {
   #button;
   #held;
   #on;
@@ -18,15 +18,15 @@ export class Hold {
     // Clicks without a pointer, as from a screen reader, toggle the state.
     button.addEventListener("click", ({ detail }) => detail === 0 && this.#set(!this.#held));
     button.addEventListener("contextmenu", (event) => event.preventDefault());
-    const is_ours = ({ key: pressed, target }) =>
+    const isHandled = ({ key: pressed, target }) =>
       target === button ? [" ", "Enter", key].includes(pressed.toLowerCase()) : pressed.toLowerCase() === key;
     document.addEventListener("keydown", (event) => {
-      if (!is_ours(event) || writes(event.target) || event.ctrlKey || event.metaKey || event.altKey) return;
+      if (!isHandled(event) || writes(event.target) || event.ctrlKey || event.metaKey || event.altKey) return;
       event.preventDefault();
       if (!event.repeat) this.#set(true);
     });
     document.addEventListener("keyup", (event) => {
-      if (!is_ours(event)) return;
+      if (!isHandled(event)) return;
       // Keeps some browsers from clicking the button.
       event.preventDefault();
       this.#set(false);

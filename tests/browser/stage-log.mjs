@@ -1,13 +1,13 @@
-// Log of the stage in each painted frame, for drafts.test.mjs and first_pictures.mjs.
+// Log of the stage in each painted frame, for drafts.test.mjs and firstPictures.mjs.
 
 import { middle } from "./support.mjs";
 
-// Starts the log. Requires a page that is not open yet. Adds to window.stage_log, for each painted frame,
+// Starts the log. Requires a page that is not open yet. Adds to window.stageLog, for each painted frame,
 // {at, scene, thumbnail, width}: time in ms, scene of the stage, file of the visible thumbnail or "", and
 // width of the visible picture or 0. Adds to window.pictures [time, width] of each drawn picture.
-export function log_stage(page) {
+export function logStage(page) {
   return page.addInitScript(() => {
-    window.stage_log = [];
+    window.stageLog = [];
     window.pictures = [];
     const draw = CanvasRenderingContext2D.prototype.drawImage;
     CanvasRenderingContext2D.prototype.drawImage = function (...call) {
@@ -17,10 +17,15 @@ export function log_stage(page) {
     const note = () => {
       requestAnimationFrame(note);
       const [stage, poster, canvas] = ["stage", "poster", "canvas"].map((id) => document.getElementById(id));
-      if (!stage) return;
+      if (!poster) return; // the page is not ready
       const seen = !poster.hidden && poster.complete && poster.naturalWidth > 0;
       const thumbnail = seen ? poster.src.split("/").at(-1) : "";
-      window.stage_log.push({ at: performance.now(), scene: stage.dataset.scene, thumbnail, width: canvas.hidden ? 0 : canvas.width });
+      window.stageLog.push({
+        at: performance.now(),
+        scene: stage.dataset.scene,
+        thumbnail,
+        width: canvas.hidden ? 0 : canvas.width,
+      });
     };
     requestAnimationFrame(note);
   });
@@ -31,7 +36,7 @@ export function pick(page, name) {
   return page.evaluate((wanted) => {
     const card = document.querySelector(`#gallery [data-name="${wanted}"]`);
     card.scrollIntoView({ block: "center", behavior: "instant" });
-    window.stage_log = [];
+    window.stageLog = [];
     window.pictures = [];
     const start = performance.now();
     card.click();
@@ -40,7 +45,7 @@ export function pick(page, name) {
 }
 
 // Turns the view by the mouse for `ms`. Resolves to [time, width] of the pictures drawn meanwhile.
-export async function drag_for(page, ms) {
+export async function dragFor(page, ms) {
   const { x, y } = await middle(page);
   await page.mouse.move(x, y);
   await page.mouse.down();
@@ -52,11 +57,11 @@ export async function drag_for(page, ms) {
   return drawn;
 }
 
-export const scene_names = (page) =>
+export const sceneNames = (page) =>
   page.evaluate(() => [...document.querySelectorAll("#gallery [data-name]")].map((card) => card.dataset.name));
 
 // Slows down the browser by the factor `times`, not the service.
-export async function slow_down(page, times) {
+export async function slowDown(page, times) {
   const device = await page.context().newCDPSession(page);
   await device.send("Emulation.setCPUThrottlingRate", { rate: times });
 }

@@ -1,22 +1,23 @@
 // Slider stops of a chart: render plans, each more accurate than every cheaper one.
 
-import { rounded, rounded_up } from "./progress.js";
+import { rounded, roundedUp } from "./progress.js";
 
-const kNearer = 0.99; // error ratio above which two points count as equal, as in the service
-// Query parameters of view and size, which a plan leaves out.
-const kOfView = ["azimuth", "elevation", "distance", "pan", "fov", "time", "width", "height"];
+const EQUAL_RATIO = 0.99; // error ratio above which two points count as equal, as in the service
+// Query parameters of the view, with the short names that the page uses.
+const VIEW_KEYS = ["azimuth_degrees", "elevation_degrees", "fov_degrees", "distance", "pan", "time"];
+const SHORT_VIEW_KEYS = ["azimuth", "elevation", "fov"];
 
 // Returns the stops as {point, place, line}: the chart's point, its position by log cost from 0 (fastest) to
 // 1, and its description. Skips a point that costs more than a stop without a smaller mean error, even if the
 // rounds cannot distinguish the two.
-export function stops_of({ front, points, noise_floor }) {
+export function stopsOf({ front, points, noise_floor: noiseFloor }) {
   const stops = [];
   let nearest = Infinity;
   for (const point of front.map((index) => points[index])) {
-    const error = Math.max(point.rmse, noise_floor);
-    if (error >= kNearer * nearest) continue;
+    const error = Math.max(point.rmse, noiseFloor);
+    if (error >= EQUAL_RATIO * nearest) continue;
     nearest = error;
-    stops.push({ point, line: line_of(point) });
+    stops.push({ point, line: lineOf(point) });
   }
   const [low, high] = [stops[0], stops.at(-1)].map(({ point }) => Math.log(point.cpu_ms));
   return stops.map((stop) => ({
@@ -26,7 +27,7 @@ export function stops_of({ front, points, noise_floor }) {
 }
 
 // Returns the index of the stop nearest to `place`.
-export function stop_at(stops, place) {
+export function stopAt(stops, place) {
   const away = stops.map((stop) => Math.abs(stop.place - place));
   return away.indexOf(Math.min(...away));
 }
@@ -36,26 +37,26 @@ export function duration(seconds) {
   return seconds < 99.5 ? `${rounded(seconds)} s` : `${Math.round(seconds / 60)} min`;
 }
 
-// Returns a text such as "0.8 s, error ≤ 0.004 (95 %), whitted, depth 5, 16 samples, float". The time is
+// Returns a text such as "0.8 s, error ≤ 0.004 (95 % confidence), whitted, depth 5, 16 samples, float". The time is
 // predicted.
-export function line_of({ full_size, interval, rmse, technique, max_depth, samples, precision }) {
+export function lineOf({ full_size: fullSize, interval, rmse, technique, max_depth: depth, samples, precision }) {
   const error = interval
-    ? `error ≤ ${rounded_up(interval.rmse.high)} (95 %)`
+    ? `error ≤ ${roundedUp(interval.rmse.high)} (95 % confidence)`
     : `error about ${rounded(rmse)} (one round)`;
   const count = samples === 1 ? "1 sample" : `${samples} samples`;
-  return `${duration(full_size.seconds)}, ${error}, ${technique}, depth ${max_depth}, ${count}, ${precision}`;
+  return `${duration(fullSize.seconds)}, ${error}, ${technique}, depth ${depth}, ${count}, ${precision}`;
 }
 
 // Returns the plan of a point as a query for links, without view and size.
-export function plan_of({ plan, samples }) {
+export function planOf({ plan, samples }) {
   const query = new URLSearchParams(plan);
-  for (const key of kOfView) query.delete(key);
+  for (const key of [...VIEW_KEYS, ...SHORT_VIEW_KEYS, "width", "height"]) query.delete(key);
   query.set("samples", samples); // a plan may leave them to the scene
   return String(query);
 }
 
 // Parses the plan of a link into {technique, samples, more}. `more` is the rest as a query.
-export function options_of(plan) {
+export function optionsOf(plan) {
   const query = new URLSearchParams(plan);
   const [technique, samples] = [query.get("technique") ?? "", Number(query.get("samples"))];
   query.delete("technique");
@@ -64,13 +65,13 @@ export function options_of(plan) {
 }
 
 // Returns the address of a picture's error bound in false colours.
-export const bound_of = (address) => `${address}${address.includes("?") ? "&" : "?"}view=bound`;
+export const boundOf = (address) => `${address}${address.includes("?") ? "&" : "?"}view=bound`;
 
 // Returns a picture's address with the view of `query` (URLSearchParams).
-export function at_view(address, query) {
+export function atView(address, query) {
   const [path, text] = address.split("?");
   const all = new URLSearchParams(text);
-  for (const key of kOfView.filter((name) => name !== "width" && name !== "height")) {
+  for (const key of [...VIEW_KEYS, ...SHORT_VIEW_KEYS]) {
     all.delete(key);
     if (query.has(key)) all.set(key, query.get(key));
   }

@@ -1,0 +1,36 @@
+// Writes settings and view to the URL hash, the address of what the page shows.
+
+import { formatHash } from "./link.js";
+
+const SAVE_MS = 1000; // interval of updates; browsers throttle shorter ones
+
+export class AddressBar {
+  #store;
+  #camera;
+  #timer = 0;
+
+  constructor(store, camera) {
+    this.#store = store;
+    this.#camera = camera;
+  }
+
+  // Updates the address, unless a scene is still being opened.
+  save() {
+    clearTimeout(this.#timer);
+    this.#timer = 0;
+    if (this.#store.get().scene) history.replaceState(null, "", this.#hash());
+  }
+
+  saveSoon() {
+    this.#timer ||= setTimeout(() => this.save(), SAVE_MS);
+  }
+
+  // Adds an entry to the history, with `view` instead of the camera's.
+  push(view) {
+    history.pushState(null, "", this.#hash(view));
+  }
+
+  #hash(view = this.#camera.view) {
+    return formatHash(this.#store.get(), view);
+  }
+}
