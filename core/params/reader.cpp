@@ -52,7 +52,8 @@ Reader::Reader(Reader& parent, const Location& location, const json& object)
 void Reader::finish() {
   if (type_unknown_) return;
   const auto was_asked = [&](Key key) {
-    return std::any_of(asked_.begin(), asked_.end(), [&](Key asked) { return written_key(asked) == key; });
+    return std::find(asked_.begin(), asked_.end(), key) != asked_.end() ||
+           std::any_of(asked_.begin(), asked_.end(), [&](Key asked) { return written_key(asked) == key; });
   };
   for (const auto& [key, value] : object_->get_ref<const json::object_t&>()) {
     if (was_asked(key)) continue;
@@ -63,15 +64,20 @@ void Reader::finish() {
 }
 
 Reader::Key Reader::written_key(Key key) const {
-  const auto& members = object_->get_ref<const json::object_t&>();
   const Key former = former_name(key);
-  return !former.empty() && !members.contains(key) && members.contains(former) ? former : key;
+  return !former.empty() && !member(key) && member(former) ? former : key;
+}
+
+const json* Reader::member(Key name) const {
+  const auto& members = object_->get_ref<const json::object_t&>();
+  const auto found = members.find(name);
+  return found == members.end() ? nullptr : &found->second;
 }
 
 const json* Reader::lookup(Key key) const {
-  const auto& members = object_->get_ref<const json::object_t&>();
-  const auto found = members.find(written_key(key));
-  return found == members.end() ? nullptr : &found->second;
+  if (const json* value = member(key)) return value;
+  const Key former = former_name(key);
+  return former.empty() ? nullptr : member(former);
 }
 
 void Reader::note_missing(Key key, const std::string& allowed) {

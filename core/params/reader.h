@@ -85,7 +85,8 @@ class Reader final : public Params {
   void note_missing(Key key, const std::string& allowed);
   // Returns the name of `key` in this object: the former one if the object has only that.
   Key written_key(Key key) const;
-  const nlohmann::json* lookup(Key key) const;
+  const nlohmann::json* member(Key name) const;  // by exactly this name; null if it is missing
+  const nlohmann::json* lookup(Key key) const;   // by the key's present or former name; null if it is missing
   // Returns the list at `key`. Reports an error and returns null if the type or the size is wrong.
   const nlohmann::json* find_list(Key key, Count count, std::string_view noun);
 
