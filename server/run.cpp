@@ -42,8 +42,7 @@ std::optional<std::string> unknown_command(int argc, char** argv, const std::vec
   if (std::find(names.begin(), names.end(), word) != names.end()) return std::nullopt;
   const std::vector<std::string_view> views(names.begin(), names.end());
   const auto meant = nearest(word, views);
-  return "unknown command \"" + word + "\"" + (meant ? " (did you mean " + *meant + "?)" : "") +
-         "; see orrery --help";
+  return "unknown command \"" + word + "\"" + question_of(meant) + "; see orrery --help";
 }
 
 // Returns an error message with the unknown options and suggestions, or with the unknown arguments if there
@@ -63,7 +62,7 @@ std::string unknown_words(const CLI::App& app) {
     if (!word.starts_with("--")) continue;
     const std::string name = word.substr(0, word.find('='));
     const auto meant = nearest_key(name.substr(2), known);
-    add(options, "unknown option " + name + (meant ? " (did you mean --" + *meant + "?)" : ""));
+    add(options, "unknown option " + name + question_of(meant, "--"));
   }
   return (options.empty() ? arguments : options) + "; see orrery " + command.get_name() + " --help";
 }

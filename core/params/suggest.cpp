@@ -21,10 +21,12 @@ std::string lower_case(std::string_view text) {
   return lower;
 }
 
-// Returns the letters and digits of the text, in lower case: "diffusecolor" for "Diffuse_Color".
+// Returns the letters and digits of the text, in lower case and American spelling: "diffusecolor" for
+// "Diffuse_Colour".
 std::string plain_letters(std::string_view text) {
   std::string letters = lower_case(text);
   std::erase_if(letters, [](char c) { return c == '_' || c == '-' || c == ' '; });
+  if (const std::size_t at = letters.find("colour"); at != letters.npos) letters.erase(at + 4, 1);
   return letters;
 }
 
@@ -38,15 +40,11 @@ constexpr Synonym kSynonyms[] = {
     {"albedo", {"kd", "reflectance", "base_color", "diffuse"}},
     {"diffuse", {"kd", "reflectance", "base_color"}},
     {"diffusecolor", {"kd", "reflectance", "base_color", "diffuse"}},
-    {"diffusecolour", {"kd", "reflectance", "base_color", "diffuse"}},
     {"color", {"kd", "reflectance", "base_color", "diffuse", "intensity", "radiance"}},
-    {"colour", {"kd", "reflectance", "base_color", "diffuse", "intensity", "radiance"}},
     {"ambient", {"ka"}},
     {"ambientcolor", {"ka"}},
-    {"ambientcolour", {"ka"}},
     {"specular", {"ks"}},
     {"specularcolor", {"ks", "specular"}},
-    {"specularcolour", {"ks", "specular"}},
     {"exponent", {"shininess"}},
     {"emissive", {"emission"}},
     {"emit", {"emission"}},
@@ -100,11 +98,15 @@ std::optional<std::string> only_one_beginning_with(std::string_view word,
   return found;
 }
 
-std::string question(const std::optional<std::string>& name) {
-  return name ? " (did you mean " + in_quotes(*name) + "?)" : "";
+std::string in_quotes_if_any(const std::optional<std::string>& name) {
+  return name ? question_of(in_quotes(*name)) : "";
 }
 
 }  // namespace
+
+std::string question_of(const std::optional<std::string>& name, std::string_view prefix) {
+  return name ? " (did you mean " + std::string(prefix) + *name + "?)" : "";
+}
 
 int edit_distance(std::string_view a, std::string_view b, int limit) {
   const std::size_t gap = a.size() > b.size() ? a.size() - b.size() : b.size() - a.size();
@@ -164,11 +166,11 @@ std::optional<std::string> nearest_key(std::string_view word, std::span<const st
 }
 
 std::string did_you_mean(std::string_view word, std::span<const std::string_view> candidates) {
-  return question(nearest(word, candidates));
+  return in_quotes_if_any(nearest(word, candidates));
 }
 
 std::string did_you_mean_key(std::string_view word, std::span<const std::string_view> keys) {
-  return question(nearest_key(word, keys));
+  return in_quotes_if_any(nearest_key(word, keys));
 }
 
 }  // namespace orrery

@@ -25,6 +25,10 @@ std::optional<std::string> nearest(std::string_view word, std::span<const std::s
 // must be those that the object can still take.
 std::optional<std::string> nearest_key(std::string_view word, std::span<const std::string_view> keys);
 
+// Returns ` (did you mean --radius?)` with the prefix "--", or "" without `name`. For flags, commands and
+// settings.
+std::string question_of(const std::optional<std::string>& name, std::string_view prefix = "");
+
 // Return ` (did you mean "radius"?)`, or "" if no candidate is close.
 std::string did_you_mean(std::string_view word, std::span<const std::string_view> candidates);
 std::string did_you_mean_key(std::string_view word, std::span<const std::string_view> keys);

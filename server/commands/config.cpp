@@ -46,8 +46,7 @@ Problem unknown(const std::string& place, const char* kind, const std::string& n
                 const std::vector<std::string>& known) {
   const std::vector<std::string_view> views(known.begin(), known.end());
   const auto meant = nearest(name, views);
-  return {place, std::string("unknown ") + kind + " " + shortened(name, 80) +
-                     (meant ? " (did you mean " + *meant + "?)" : "")};
+  return {place, std::string("unknown ") + kind + " " + shortened(name, 80) + question_of(meant)};
 }
 
 // Returns the help of a setting with its range and its default.

@@ -33,8 +33,7 @@ int print_help(const CLI::App& root, const std::string& topic) {
   }
   const std::vector<std::string_view> known(topics.begin(), topics.end());
   const auto meant = nearest(topic, known);
-  throw InputError("", "unknown topic \"" + topic + "\"" + (meant ? " (did you mean " + *meant + "?)" : "") +
-                           "; see orrery --help");
+  throw InputError("", "unknown topic \"" + topic + "\"" + question_of(meant) + "; see orrery --help");
 }
 
 }  // namespace
