@@ -71,11 +71,6 @@ Fit fit_of(std::string_view entry, std::string_view type) {
   return fit;
 }
 
-// Sets Orrery-NAME, and X-NAME for clients of version 0.1.
-void set_with_former_name(Response& response, const std::string& name, const std::string& value) {
-  response.set("Orrery-" + name, value).set("X-" + name, value);
-}
-
 }  // namespace
 
 Caller caller_of(const Request& request) { return {request.client, request.gone}; }
@@ -151,8 +146,20 @@ void set_warnings(Response& response, std::span<const Problem> warnings) {
   if (!text.empty()) response.set("Orrery-Warning", std::move(text));
 }
 
+void add_with_former_name(Fields& fields, const std::string& name, const std::string& value) {
+  for (const char* prefix : {"Orrery-", "X-"}) fields.emplace_back(prefix + name, value);
+}
+
+void add_accuracy(Fields& fields, const Picture& picture) {
+  if (picture.stats.error.known()) add_with_former_name(fields, "RMSE", error_text(picture.stats));
+  fields.emplace_back("Orrery-Error-Bound", bound_text(picture.certificate));
+  if (const std::string bias = bias_text(picture.certificate); !bias.empty())
+    add_with_former_name(fields, "Bias", bias);
+}
+
 Response picture_response(std::string_view type, const Rendered& rendered, const Timing& timing) {
   Response response = text_response(200, type, {rendered.picture, rendered.picture->bytes});
+  Fields fields;
   std::string told = server_timing(timing);
   if (!told.empty()) told += ", ";
   if (rendered.made_now) {
@@ -167,15 +174,12 @@ Response picture_response(std::string_view type, const Rendered& rendered, const
         static_cast<unsigned long long>(work.primitive_tests));
     told += text;
     response.rays = stats.counts.rays.total();
-    set_with_former_name(response, "Rays", std::to_string(response.rays));
+    add_with_former_name(fields, "Rays", std::to_string(response.rays));
   } else {
     told += "kept;desc=\"cached from another request\"";
   }
-  if (const RenderStats& stats = rendered.picture->stats; stats.error.known())
-    set_with_former_name(response, "RMSE", error_text(stats));
-  response.set("Orrery-Error-Bound", bound_text(rendered.picture->certificate));
-  if (const std::string bias = bias_text(rendered.picture->certificate); !bias.empty())
-    set_with_former_name(response, "Bias", bias);
+  add_accuracy(fields, *rendered.picture);
+  for (auto& [name, value] : fields) response.set(name, std::move(value));
   response.set("Server-Timing", std::move(told));
   set_warnings(response, rendered.picture->warnings);
   return response;

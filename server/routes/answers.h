@@ -39,6 +39,13 @@ std::string server_timing(const Timing& timing);
 // Sets Orrery-Warning if there are warnings.
 void set_warnings(Response& response, std::span<const Problem> warnings);
 
+// Adds Orrery-NAME, and X-NAME for clients of version 0.1.
+void add_with_former_name(Fields& fields, const std::string& name, const std::string& value);
+
+// Adds the error bound of a picture, its RMSE if it was estimated from the samples, and its bias if it has
+// one.
+void add_accuracy(Fields& fields, const Picture& picture);
+
 // Returns a response with the picture and its cost: Server-Timing with the steps, the accelerator and its
 // counted work, and Orrery-Rays. Sets Orrery-RMSE if the error was estimated from the samples.
 Response picture_response(std::string_view type, const Rendered& rendered, const Timing& timing);

@@ -24,15 +24,9 @@ nlohmann::ordered_json header_of(const Refinement::Step& step, const Plan& plan)
 
 Fields fields_of(const Refinement::Step& step) {
   Fields fields;
-  const auto add = [&](const std::string& name, const std::string& value) {
-    for (const char* prefix : {"Orrery-", "X-"})
-      fields.emplace_back(prefix + name, value);  // X-: version 0.1
-  };
-  add("Samples", std::to_string(step.samples));
-  add("Rays", std::to_string(step.rays));
-  if (step.picture->stats.error.known()) add("RMSE", error_text(step.picture->stats));
-  fields.emplace_back("Orrery-Error-Bound", bound_text(step.picture->certificate));
-  if (const std::string bias = bias_text(step.picture->certificate); !bias.empty()) add("Bias", bias);
+  add_with_former_name(fields, "Samples", std::to_string(step.samples));
+  add_with_former_name(fields, "Rays", std::to_string(step.rays));
+  add_accuracy(fields, *step.picture);
   return fields;
 }
 
