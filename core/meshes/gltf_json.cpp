@@ -11,7 +11,7 @@
 namespace orrery {
 namespace {
 
-constexpr int kMaxDepth = 32;                  // geometry needs 6
+constexpr std::size_t kMaxDepth = 32;          // geometry needs 6
 constexpr std::size_t kMaxValues = 1'000'000;  // 16 to 80 bytes of memory each, 2 bytes of text or more
 
 constexpr std::string_view kTopKeys[] = {"asset",       "scene",   "scenes",
@@ -40,7 +40,7 @@ class GltfBuilder final : public nlohmann::json_sax<nlohmann::json> {
   bool key(string_t& name) override {
     check_depth();
     if (skipped_ > 0) return true;
-    const bool is_top = depth_ == 1;
+    const bool is_top = depth() == 1;
     skips_next_ = is_top ? std::find(std::begin(kTopKeys), std::end(kTopKeys), name) == std::end(kTopKeys)
                          : name == "extras" || name == "extensions";
     key_ = std::move(name);
@@ -60,7 +60,6 @@ class GltfBuilder final : public nlohmann::json_sax<nlohmann::json> {
   }
   bool open(nlohmann::json container) {
     count_value();
-    ++depth_;
     if (skipped_ > 0 || std::exchange(skips_next_, false))
       ++skipped_;
     else
@@ -68,7 +67,6 @@ class GltfBuilder final : public nlohmann::json_sax<nlohmann::json> {
     return true;
   }
   bool close() {
-    --depth_;
     if (skipped_ > 0)
       --skipped_;
     else
@@ -82,8 +80,9 @@ class GltfBuilder final : public nlohmann::json_sax<nlohmann::json> {
     parent.push_back(std::move(value));
     return parent.back();
   }
+  std::size_t depth() const { return open_.size() + skipped_; }
   void check_depth() const {
-    if (depth_ > kMaxDepth)
+    if (depth() > kMaxDepth)
       throw InputError("", "JSON is nested too deeply (limit " + std::to_string(kMaxDepth) + " levels)");
   }
   void count_value() {
@@ -98,8 +97,7 @@ class GltfBuilder final : public nlohmann::json_sax<nlohmann::json> {
   std::vector<nlohmann::json*> open_;  // containers from the root to the innermost
   std::string key_;                    // key of the next value
   bool skips_next_ = false;            // the next value is not needed
-  int skipped_ = 0;                    // open containers that are not needed
-  int depth_ = 0;                      // open containers
+  std::size_t skipped_ = 0;            // open containers that are not needed
   std::size_t values_ = 0, error_position_ = 0;
 };
 
