@@ -7,6 +7,8 @@ import { tmpdir } from "node:os";
 import { basename, dirname, extname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 
+import { selfTest } from "./self-test.mjs";
+
 const kFloors = [
   ["core/base", "core/math"],
   ["core/params", "core/image", "core/meshes", "core/pictures"],
@@ -219,17 +221,12 @@ function judgeTree(tree) {
   }
 }
 
-function selfTest() {
-  let failures = 0;
-  for (const [expected, changes] of [[null, {}], ...kBadTrees]) {
-    const fired = [...new Set(judgeTree({ ...kGoodTree, ...changes }))];
-    if (fired.join() === (expected ?? "")) continue;
-    ++failures;
-    console.error(`expected [${expected ?? ""}], got [${fired}] for ${Object.keys(changes)}`);
-  }
-  console.log(`${kBadTrees.length + 1} trees judged, ${failures} wrongly`);
-  return failures;
-}
+const judgeSelf = () =>
+  selfTest(
+    [["", {}], ...kBadTrees],
+    (changes) => [...new Set(judgeTree({ ...kGoodTree, ...changes }))],
+    (changes) => Object.keys(changes),
+  );
 
 function judgeRepository() {
   const root = join(dirname(fileURLToPath(import.meta.url)), "../..");
@@ -239,4 +236,4 @@ function judgeRepository() {
   return problems.length;
 }
 
-process.exitCode = (process.argv.includes("--self-test") ? selfTest() : judgeRepository()) ? 1 : 0;
+process.exitCode = (process.argv.includes("--self-test") ? judgeSelf() : judgeRepository()) ? 1 : 0;

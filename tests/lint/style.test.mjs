@@ -6,6 +6,8 @@ import { readdirSync, readFileSync } from "node:fs";
 import { dirname, extname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 
+import { selfTest } from "./self-test.mjs";
+
 const kRoot = join(dirname(fileURLToPath(import.meta.url)), "../..");
 const kFolders = ["core", "server", "tests", "web", "script"];
 const kCode = new Set([".cpp", ".h", ".js", ".mjs"]);
@@ -81,18 +83,11 @@ const kSelfTests = [
   ["", "server/a.cpp", "changed_.wait_for(lock, kLimit, [&] { return done_; });\n"],
 ];
 
-function selfTest() {
-  let failures = 0;
-  for (const [expected, path, text] of kSelfTests) {
-    const fired = judge(path, text)
-      .map(({ rule }) => rule)
-      .join();
-    if (fired === expected) continue;
-    ++failures;
-    console.error(`expected [${expected}], got [${fired}] for ${path}: ${text.slice(0, 60)}`);
-  }
-  console.log(`${kSelfTests.length} texts judged, ${failures} wrongly`);
-  return failures;
-}
+const judgeSelf = () =>
+  selfTest(
+    kSelfTests,
+    (path, text) => judge(path, text).map(({ rule }) => rule),
+    (path, text) => `${path}: ${text.slice(0, 60)}`,
+  );
 
-process.exitCode = (process.argv.includes("--self-test") ? selfTest() : judgeRepository()) ? 1 : 0;
+process.exitCode = (process.argv.includes("--self-test") ? judgeSelf() : judgeRepository()) ? 1 : 0;
