@@ -138,7 +138,7 @@ MemoryCharge::~MemoryCharge() {
 }
 
 void interruption_point() {
-  if (current_task.turn) current_task.turn->yield();
+  if (current_task.time_slice) current_task.time_slice->yield();
   if (current_task.stop && current_task.stop->stop_requested()) throw Cancelled();
   if (current_task.memory) current_task.memory->require_granted();
 }

@@ -34,8 +34,8 @@ class MemoryAccount : public std::enable_shared_from_this<MemoryAccount> {
   // Excludes `bytes` of the account from its limit, because another owner is charged for them.
   void settle(std::size_t bytes);
 
-  // Calls work() with this account, `stop` and the current turn as the thread's TaskScope. If work() throws
-  // std::bad_alloc because the account was refused memory, throws the reason of the refusal instead.
+  // Calls work() with this account, `stop` and the current time slice as the thread's TaskScope. If work()
+  // throws std::bad_alloc because the account was refused memory, throws the reason of the refusal instead.
   template <class Act>
   auto run(const std::stop_token& stop, const Act& work);
 
@@ -69,7 +69,7 @@ class MemoryAccount : public std::enable_shared_from_this<MemoryAccount> {
 struct TaskContext {
   MemoryAccount* memory = nullptr;        // account charged for allocations
   const std::stop_token* stop = nullptr;  // cancels the work
-  TimeSlice* turn = nullptr;              // time slice of the work; called from any thread
+  TimeSlice* time_slice = nullptr;        // time slice of the work; called from any thread
 };
 
 // Sets the calling thread's context until the end of the scope. Parallel helpers that the caller waits for
@@ -109,7 +109,7 @@ class MemoryCharge {
 template <class Act>
 auto MemoryAccount::run(const std::stop_token& stop, const Act& work) {
   try {
-    const TaskScope scope({this, &stop, TaskScope::current().turn});
+    const TaskScope scope({this, &stop, TaskScope::current().time_slice});
     return work();
   } catch (const std::bad_alloc&) {
     rethrow_refusal();

@@ -64,8 +64,8 @@ void WorkMemory::require_room(const std::string& client, std::size_t own, std::s
   const std::size_t others_of_client = (known == taken_by_.end() ? 0 : known->second) - own;
   const std::size_t of_others = taken_ - own - others_of_client;
   // Returns whether the client leaves as much as it then holds. Sums of few terms stay below 2^62.
-  const auto fits = [&](std::size_t beside, std::size_t client_has) {
-    return beside + 2 * (client_has + bytes) <= max_;
+  const auto fits = [&](std::size_t others, std::size_t client_has) {
+    return others + 2 * (client_has + bytes) <= max_;
   };
   if (fits(of_others, others_of_client)) return;
   if (!fits(0, 0))

@@ -169,9 +169,9 @@ TEST(WorkMemory, LimitsClientToHalfOfFreeMemory) {
 
 TEST(WorkMemory, ReportsExceededByteLimit) {
   WorkMemory memory(1000 * kMega);
-  const std::string told = refusal_of(memory.open("a"), 600 * kMega);
-  EXPECT_NE(told.find("524,288,000"), std::string::npos) << told;
-  EXPECT_NE(told.find("of work_bytes)"), std::string::npos) << told;
+  const std::string error = refusal_of(memory.open("a"), 600 * kMega);
+  EXPECT_NE(error.find("524,288,000"), std::string::npos) << error;
+  EXPECT_NE(error.find("of work_bytes)"), std::string::npos) << error;
 }
 
 }  // namespace

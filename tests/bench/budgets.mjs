@@ -56,7 +56,7 @@ const line = (values) => values.map((v, i) => (i === 0 ? v.padEnd(24) : String(v
 
 export const kBudgets = {
   name: "budgets",
-  what: "what a budget of error costs, beside the cheapest settings that keep it",
+  what: "cost of an error budget, relative to the cheapest settings that keep it",
   needs: [kOrrery],
   run({ size = kSize }) {
     const ratios = [];

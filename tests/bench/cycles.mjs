@@ -242,7 +242,7 @@ async function compare_errors(scene, { seeds = kPairs, samples = kMostSamples, s
 
 export const kCycles = {
   name: "cycles",
-  what: "CPU time to the same error beside Cycles (Blender 3.4), and whether the two agree",
+  what: "CPU time to equal error compared with Cycles (Blender 3.4), and agreement of the means",
   needs: ["blender", kOrrery],
   async run(options) {
     try {

@@ -74,7 +74,7 @@ async function compare({ title, file }, size) {
 
 export const kCyclesThreshold = {
   name: "cycles-threshold",
-  what: "an error that is asked: promised and realised, beside Cycles' noise threshold",
+  what: "requested, promised and actual error, compared with the noise threshold of Cycles",
   needs: ["blender", kOrrery],
   async run({ size = kSize }) {
     for (const scene of kScenes) await compare(scene, size);

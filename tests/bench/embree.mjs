@@ -82,7 +82,7 @@ function print_summary(what, rows) {
 
 export const kEmbree = {
   name: "embree",
-  what: "rays and builds beside Embree 3's on meshes of different nature, open and in a closed room; one thread",
+  what: "rays and builds compared with Embree 3 on seven kinds of meshes, open and in a closed room; one thread",
   needs: [kProgram],
   async run({ pairs, charts, meshes, triangles }) {
     console.log(
@@ -111,7 +111,7 @@ export const kEmbree = {
     mkdirSync(charts, { recursive: true });
     writeFileSync(
       `${charts}/embree.svg`,
-      ratio_chart("CPU time of Embree 3 beside ours, one thread", of_mode("default"), kKinds),
+      ratio_chart("CPU time of Embree 3 relative to orrery, one thread", of_mode("default"), kKinds),
     );
     console.log(`chart: ${charts}/embree.svg`);
     return rows.flatMap(({ name, ratios }) =>

@@ -76,7 +76,7 @@ function comparison(subject, what, words) {
       const { frames, refitted, surface_area_growth, primitives } = facts;
       const remark =
         `${primitives} primitives; of ${frames} frames ${refitted} followed the one before; ` +
-        `boxes at most ${surface_area_growth.toFixed(2)} times as large beside what they hold as when built`;
+        `boxes at most ${surface_area_growth.toFixed(2)} times as large, relative to their contents, as when built`;
       return { ...sides, remark };
     },
   };

@@ -80,7 +80,7 @@ function scene_panel(name, result, names) {
 
 const kStructures = {
   name: "structures",
-  what: "every structure on scenes of different nature: build time and ray cost beside bvh, and counts a ray",
+  what: "every structure on scenes of different nature: build time and ray cost relative to bvh, and counts per ray",
   run({ pairs, charts }) {
     const results = write_subjects().map(([name, scene]) => {
       const result = measure(scene, pairs, "picture");
@@ -88,13 +88,15 @@ const kStructures = {
       return [name, result];
     });
     console.log(
-      "\nbuild and ray: CPU time beside bvh's, medians of interleaved rounds on one thread; counted: cost by",
+      "\nbuild and ray: CPU time relative to bvh, medians of interleaved rounds on one thread; counted: cost by",
     );
-    console.log("counts beside the least; visits, boxes, primitives: a ray; bytes and references: a primitive");
+    console.log(
+      "counts relative to the least; visits, boxes, primitives: per ray; bytes and references: per primitive",
+    );
     const names = [...new Set(results.flatMap(([, result]) => result.structures.map((s) => s.name)))];
     const panels = results.map(([name, result]) => scene_panel(name, result, names));
     const title = "Structures: what building costs against what rays cost";
-    const note = "CPU time beside bvh (1, 1), one thread; ringed: what auto takes";
+    const note = "CPU time relative to bvh (1, 1), one thread; ringed: the choice of auto";
     save(charts, "structures.svg", chart({ title, note, panels, columns: 4, names }));
   },
 };
@@ -125,7 +127,7 @@ const kGrowth = {
           widths,
         ),
       );
-    console.log("visits and primitives: a ray; ray and build a triangle: CPU time beside the first row's");
+    console.log("visits and primitives: per ray; ray, and build per triangle: CPU time relative to the first row");
     const series = (key) => [{ name: key, line: true, points: rows.map((row) => ({ x: row.triangles, y: row[key] })) }];
     const panels = [
       { title: "node visits a ray", key: "visits" },
@@ -134,7 +136,7 @@ const kGrowth = {
     ].map(({ title, key }) => ({
       title,
       x: "triangles",
-      y: key === "relative" ? "beside 1e3 triangles" : "a ray",
+      y: key === "relative" ? "relative to 1e3 triangles" : "per ray",
       y_axis: "linear",
       series:
         key === "relative"

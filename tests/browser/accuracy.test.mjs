@@ -88,7 +88,7 @@ pageTest(
       requested.map((each) => each.get("seconds") ?? each.get("error")),
       ["2", "0.02", "0.005"],
     );
-    assert.deepEqual([...new Set(requested.map((each) => each.get("samples")))], ["2"], "what was chosen");
+    assert.deepEqual([...new Set(requested.map((each) => each.get("samples")))], ["2"], "the chosen number of samples");
     await page.locator("#technique").selectOption("raycast");
     await eventually("that of other options", async () => requested.at(-1).get("technique") === "raycast");
     await page.goBack();
@@ -98,7 +98,7 @@ pageTest(
     await page.getByRole("button", { name: "2 s" }).click();
     await eventually("the budget", async () => /^Limit /.test(await text(page, "budget-status")));
     await predicted();
-    assert.equal(requested.length, before, "what is known is not asked again");
+    assert.equal(requested.length, before, "cached results are not requested again");
   },
   still,
 );

@@ -101,7 +101,7 @@ pageTest(
     await eventually("another view", async () => refined.length === 3);
     await rest(page);
     assert.deepEqual(refined[2], { samples: 16, passes: [2, 4, 8, 16] });
-    assert.deepEqual(requested, [], "nothing is rendered beside the stream");
+    assert.deepEqual(requested, [], "only the stream renders images");
   },
   { ...still, expected: /status of 429/ },
 );

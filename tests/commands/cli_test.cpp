@@ -110,7 +110,7 @@ TEST_F(CommandLine, ReproducesPictureFromPrintedPlan) {
   EXPECT_EQ(bytes_of(file("c.png")), bytes_of(file("d.png")));
   EXPECT_EQ(run(render + file("e.png") + address + " --azimuth-degrees 50").status, 0);
   EXPECT_EQ(run(render + file("f.png") + " --azimuth 50 --samples 4 --pan 0,0.5,0").status, 0);
-  EXPECT_EQ(bytes_of(file("e.png")), bytes_of(file("f.png"))) << "what is given beside it counts";
+  EXPECT_EQ(bytes_of(file("e.png")), bytes_of(file("f.png"))) << "flags override the plan";
   EXPECT_EQ(run("explain " + file("s.json") + " --plan /v1/scenes/0/frame.png").status, 0)
       << "all as the scene says";
   const std::pair<const char*, const char*> wrong[] = {

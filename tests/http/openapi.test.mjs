@@ -114,5 +114,5 @@ for (const exchange of exchanges) {
 for (const [path, item] of Object.entries(description.paths))
   for (const method of Object.keys(item).filter((key) => ["get", "post", "put", "delete"].includes(key)))
     if (!asked.has(`${method} ${path}`) && ++wrong) console.log(`not ok: ${method} ${path} was never asked for`);
-console.log(`${exchanges.length} exchanges, ${wrong} beside the description`);
+console.log(`${exchanges.length} exchanges, ${wrong} differ from the description`);
 process.exit(wrong === 0 ? 0 : 1);

@@ -54,18 +54,18 @@ async function run({ seconds }) {
     const not_modified = await measure(picture, { "If-None-Match": etag });
     const whole = await measure(picture, {});
     const told = ({ rate, bad }) => `${Math.round(rate)}/s${bad ? ` (${bad})` : ""}`;
-    const beside = (one) => `${told(one)}, ${(one.rate / icon.rate).toFixed(2)} of the icon's`;
+    const relative = (one) => `${told(one)}, ${(one.rate / icon.rate).toFixed(2)} of the icon's`;
     return {
       rows: [
-        row("304 to If-None-Match", `>= ${kNotModified}/s`, beside(not_modified), not_modified.rate >= kNotModified),
+        row("304 to If-None-Match", `>= ${kNotModified}/s`, relative(not_modified), not_modified.rate >= kNotModified),
         row(
           `the same 64x64 picture, ${first.total - first.body_at} bytes`,
           `>= ${kWhole}/s`,
-          beside(whole),
+          relative(whole),
           whole.rate >= kWhole,
         ),
         row("/favicon.svg", "", told(icon), null),
-        row("/v1/limits", "", beside(limits), null),
+        row("/v1/limits", "", relative(limits), null),
       ],
       remark: `${kConnections} connections of ${has_wrk ? "wrk" : "a client in JavaScript"}`,
     };

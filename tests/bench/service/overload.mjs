@@ -108,7 +108,7 @@ function rows_of(peaks, loads) {
   const rate_of = (list) => mean(list.map(({ rate }) => rate));
   const range = `${percent(Math.min(...shares))} .. ${percent(most(shares))}`;
   const goodput = `${percent(share)} (${range}) of ${rate_of(peaks).toFixed(1)}/s`;
-  const memory_told = `${percent(growth)} (${mib(before)}, at most ${mib(most(memory))}) ${sparkline(memory)}`;
+  const memory_text = `${percent(growth)} (${mib(before)}, at most ${mib(most(memory))}) ${sparkline(memory)}`;
   return [
     row(
       `goodput at ${rate_of(loads).toFixed(0)} requests/s`,
@@ -134,7 +134,7 @@ function rows_of(peaks, loads) {
       `${ms(p99(times))} (p50 ${ms(quantile(times, 0.5))}, max ${ms(most(times))})`,
       p99(times) <= kRefusal_ms,
     ),
-    row("resident memory beside that at the first peak", `<= ${percent(kMemory)}`, memory_told, growth <= kMemory),
+    row("resident memory relative to the first peak", `<= ${percent(kMemory)}`, memory_text, growth <= kMemory),
     none_row("connections broken", broken),
   ];
 }

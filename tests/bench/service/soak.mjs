@@ -59,7 +59,7 @@ function trend_row(samples, key, tell, allowed, target) {
   const values = samples.map((one) => one[key]);
   const { middle, last } = thirds(values);
   const measured = `${tell(middle)} -> ${tell(last)} (${percent(last / middle - 1)})  ${sparkline(values)}`;
-  return row(`${key}, last third beside the middle one`, target, measured, last <= allowed(middle));
+  return row(`${key}, last third relative to the middle third`, target, measured, last <= allowed(middle));
 }
 
 function rows_of(samples, answers) {

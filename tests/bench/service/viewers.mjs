@@ -66,7 +66,7 @@ function rows_of(viewers, lone) {
       most(p95s) <= kTarget_ms,
     ),
     row(
-      "renders beside a lone viewer's",
+      "renders relative to a single viewer",
       `<= ${percent(kOnce)}`,
       `${percent(share)}: ${renders} of ${seen} frames`,
       share <= kOnce,
