@@ -57,13 +57,13 @@ function scene(count) {
   return {
     version: 1,
     title: `${count} lamps`,
-    description: "Lamps and a light of every kind: each vertex of a path draws one, by what reaches it.",
+    description: "Small lamps and lights of all types. Each path vertex samples one by its estimated contribution.",
     camera: { type: "perspective", eye: [0, 4.2, 11.5], look_at: [0, 0.7, -0.6], fov_degrees: 44 },
     image: { width: 720, height: 450 },
     background: [0.002, 0.003, 0.007],
     materials,
     lights: [
-      { type: "directional", from: [-3, 4, 2], intensity: [0.012, 0.016, 0.03], angle_degrees: 0.5 },
+      { type: "directional", direction_to_light: [-3, 4, 2], intensity: [0.012, 0.016, 0.03], angle_degrees: 0.5 },
       { type: "line", from: [-6, 0.08, -6.5], to: [6, 0.08, -6.5], intensity_per_metre: [0.5, 0.25, 0.6] },
       { type: "point", position: [0, 1.2, 3.4], intensity: [0.5, 0.35, 0.2], attenuation: [0, 0, 1] },
       {

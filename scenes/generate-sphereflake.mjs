@@ -53,7 +53,7 @@ function scene(level) {
   return `{
   "version": 1,
   "title": "Sphereflake ${level}",
-  "description": "${flake.length.toLocaleString("en")} spheres of gold: nine small ones sit on every large one.",
+  "description": "${flake.length.toLocaleString("en")} gold spheres; each level adds nine smaller spheres to every sphere of the level before.",
   "camera": { "type": "perspective", "eye": [2.1, 1.3, 1.7], "look_at": [0, 0, 0], "up": [0, 0, 1], "fov_degrees": 45 },
   "image": { "width": 512, "height": 512 },
   "ambient": [0.1, 0.1, 0.1],

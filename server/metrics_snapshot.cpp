@@ -21,7 +21,7 @@ template <class Number>
 ClientMetric value(const Number& number, Labels labels = {}) {
   ClientMetric metric;
   metric.label = std::move(labels);
-  metric.gauge.value = metric.counter.value = static_cast<double>(number);  // the family has one type
+  metric.gauge.value = metric.counter.value = static_cast<double>(number);  // the family's type selects one
   return metric;
 }
 
@@ -58,14 +58,13 @@ void append_process_metrics(std::vector<MetricFamily>& families, const ServiceCo
                    {"process_open_fds", "Open file descriptors", kGauge, {value(open_files())}}});
 }
 
-MetricFamily given_up_family(const ServiceCounters& meters) {
-  MetricFamily family{
-      "orrery_given_up_total",
-      "Work cancelled because the client disconnected, the time was up or the service stopped, by stage",
-      MetricType::Counter,
-      {}};
+MetricFamily cancelled_family(const ServiceCounters& meters) {
+  MetricFamily family{"orrery_cancelled_total",
+                      "Work cancelled after a disconnect, a timeout or the end of the service, by stage",
+                      MetricType::Counter,
+                      {}};
   for (std::size_t i = 0; i < kStages.size(); ++i)
-    family.metric.push_back(value(meters.given_up[i], {{"stage", std::string(kStages[i])}}));
+    family.metric.push_back(value(meters.cancelled[i], {{"stage", std::string(kStages[i])}}));
   return family;
 }
 
@@ -92,7 +91,7 @@ std::vector<MetricFamily> collect_metrics(App& app, const HttpServer& server, co
       {"orrery_ready", "1 while new work is accepted", kGauge, {value(app.readiness() == "ok")}},
       {"orrery_renders_running", "Renders that hold a slot", kGauge, {value(admission.running())}},
       {"orrery_renders_waiting", "Renders in the queue", kGauge, {value(admission.waiting())}},
-      {"orrery_places_lost_total",
+      {"orrery_preemptions_total",
        "Preemptions: running work that yielded its slot to other work",
        kCounter,
        {value(admission.preemptions())}},
@@ -114,8 +113,7 @@ std::vector<MetricFamily> collect_metrics(App& app, const HttpServer& server, co
       {"orrery_cache_misses_total",
        "Images encoded, films rendered and scenes loaded",
        kCounter,
-       {value(meters.pictures_made, {{"cache", "pictures"}}),
-        value(meters.pictures_made - meters.films_found, {{"cache", "films"}}),
+       {value(meters.pictures_made, {{"cache", "pictures"}}), value(meters.films_made, {{"cache", "films"}}),
         value(scenes.loads(), {{"cache", "scenes"}})}},
       {"orrery_work_bytes",
        "Bytes of scenes that are not cached and of images in progress",
@@ -136,7 +134,7 @@ std::vector<MetricFamily> collect_metrics(App& app, const HttpServer& server, co
         value(app.films().evictions(), {{"store", "films"}}),
         value(app.jobs().evictions(), {{"store", "jobs"}})}},
       {"orrery_reload_failures_total",
-       "SIGHUPs with unusable files",
+       "Failed reloads of tokens, keys and settings (SIGHUP)",
        kCounter,
        {value(meters.reloads_failed)}},
       {"orrery_orbits", "Distinct orbits being streamed", kGauge, {value(app.orbits().count())}},
@@ -147,7 +145,7 @@ std::vector<MetricFamily> collect_metrics(App& app, const HttpServer& server, co
        {value(meters.jobs_done, {{"outcome", "done"}}), value(meters.jobs_failed, {{"outcome", "failed"}}),
         value(meters.jobs_cancelled, {{"outcome", "cancelled"}})}},
       {"orrery_log_lines_dropped_total",
-       "Log lines dropped because the reader did not read or was gone",
+       "Log lines dropped because the log's reader was too slow or had exited",
        kCounter,
        {value(log.dropped())}},
       {"orrery_connections", "Open connections", kGauge, {value(server.connections())}},
@@ -156,7 +154,7 @@ std::vector<MetricFamily> collect_metrics(App& app, const HttpServer& server, co
        kCounter,
        {value(server.refused())}},
   };
-  families.push_back(given_up_family(meters));
+  families.push_back(cancelled_family(meters));
   families.push_back(limits_family(app.settings()));
   append_process_metrics(families, meters);
   return families;

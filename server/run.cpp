@@ -45,8 +45,8 @@ std::optional<std::string> unknown_command(int argc, char** argv, const std::vec
   return "unknown command \"" + word + "\"" + question_of(meant) + "; see orrery --help";
 }
 
-// Returns an error message with the unknown options and suggestions, or with the unknown arguments if there
-// is no unknown option.
+// Returns an error message that lists the unknown options with suggestions. Lists the unknown arguments if no
+// option is unknown.
 std::string unknown_words(const CLI::App& app) {
   const CLI::App& command = *app.get_subcommands().front();
   std::vector<std::string> flags;
@@ -98,7 +98,7 @@ int run(int argc, char** argv) {
     std::vector<Command> commands;
     for (const auto& add : kCommands) {
       commands.push_back(add(app));
-      commands.back().app->set_help_flag("-h,--help", "Print this help and exit");  // now the last option
+      commands.back().app->set_help_flag("-h,--help", "Print this help and exit");  // listed last
     }
     app.footer(kProgramExamples);  // commands added later would inherit it
     if (const auto problem = unknown_command(argc, argv, commands)) return fail(kBadInput, *problem);

@@ -51,8 +51,8 @@ void add_common_headers(const Request& request, Response& response) {
       .set("Content-Security-Policy", "default-src 'self'");
 }
 
-// Makes public responses private unless anyone may see them. Responses to signed links must also be
-// revalidated, so that no cache outlives the link.
+// Makes public responses private unless anyone may see them. Caches must also revalidate responses to signed
+// links, so that no cached copy outlives its link.
 void keep_private(AccessLevel audience, Response& response) {
   const std::string kept = find_field(response.headers, "Cache-Control").value_or("");
   constexpr std::string_view kPublic = "public, ";
@@ -65,8 +65,9 @@ void keep_private(AccessLevel audience, Response& response) {
 HttpServer::Options options_of(const Settings& settings) {
   return {.host = settings.host,
           .port = settings.port,
-          .max_bodies = std::max({settings.bodies_bytes, settings.body_bytes, settings.asset_bytes}),
-          .max_answers = settings.answers_bytes,
+          .max_bodies = std::max(
+              {settings.request_buffer_bytes, settings.max_request_body_bytes, settings.asset_bytes}),
+          .max_answers = settings.response_buffer_bytes,
           .max_connections = settings.connections,
           .handlers = std::max<std::size_t>(2, std::thread::hardware_concurrency()),
           .grace = settings.grace_seconds,
@@ -116,7 +117,8 @@ void Service::run() {
 
 void Service::reload(const std::function<Settings()>& read) try {
   const Settings fresh = read();
-  if (fresh.tokens_file == settings_.tokens_file && fresh.share_key_file == settings_.share_key_file)
+  if (fresh.tokens_file == settings_.tokens_file &&
+      fresh.link_signing_key_file == settings_.link_signing_key_file)
     app_.access().reload();
   nlohmann::ordered_json fields = nlohmann::ordered_json::object();
   if (app_.access().needs_token()) fields["tokens"] = app_.access().tokens();

@@ -12,7 +12,7 @@ namespace orrery {
 // threads, so load on the first cannot block it. Both servers listen once the constructor returns.
 class Service {
  public:
-  // Throws Error if an address cannot be bound, InputError if a file cannot be used.
+  // Throws Error if an address is unavailable, InputError if a file in the settings cannot be used.
   Service(const Settings& settings, const Log& log);
 
   int port() const { return server_.port(); }

@@ -1,4 +1,5 @@
-// Speed and accuracy controls of the page: chart and slider, budgets, and the picture's own error.
+// Speed and accuracy controls of the page: chart and slider, budgets, and the error of the picture on the
+// stage.
 
 import { attachBudgets, budgetOf, budgetStatus } from "./budget.js";
 import { ChartDialog } from "./chart-dialog.js";
@@ -12,9 +13,9 @@ const $ = (id) => document.getElementById(id);
 //   withBudget({seconds, error}) -> the same with a budget
 //   shownAddress() -> address of the picture on the stage, or null
 //   pause()
-//   set({plan, seconds, error}), at most one of them set
+//   set({plan, seconds, error}), at most one of them not empty or 0
 //   announce(text), for screen readers
-// Returns {hideOverlay()}, for moves of the view.
+// Returns {hideOverlay()}, to be called when the view moves.
 export function attachAccuracy(store, on) {
   const overlay = new Overlay($("overlay"));
   const dialog = new ChartDialog($("chart"), $("show-chart"), (index) => tradeoff.choose(index));
@@ -44,7 +45,7 @@ export function attachAccuracy(store, on) {
   });
   attachBudgets(chips, store, (budget) => {
     on.set({ plan: "", ...budget });
-    // Orbits ignore budgets.
+    // Pauses, because orbits ignore budgets.
     if (budget.seconds || budget.error) on.pause();
   });
   $("drop-plan").addEventListener("click", () => on.set({ plan: "", seconds: 0, error: 0 }));
@@ -60,7 +61,7 @@ export function attachAccuracy(store, on) {
   return { hideOverlay: () => tradeoff.hideOverlay() };
 }
 
-// Shows the error of a picture at rest that was made with a plan or a budget.
+// Shows the error of a picture at rest that was rendered with a plan or a budget.
 function attachStatus(store) {
   const status = $("budget-status");
   const show = ({ missed, text }) => {

@@ -1,8 +1,8 @@
-// Writes settings and view to the URL hash, the address of what the page shows.
+// Writes settings and view to the URL hash, so that a link shows the same picture.
 
 import { formatHash } from "./link.js";
 
-const SAVE_MS = 1000; // interval of updates; browsers throttle shorter ones
+const SAVE_MS = 1000; // update interval; browsers throttle shorter ones
 
 export class AddressBar {
   #store;
@@ -25,7 +25,7 @@ export class AddressBar {
     this.#timer ||= setTimeout(() => this.save(), SAVE_MS);
   }
 
-  // Adds an entry to the history, with `view` instead of the camera's.
+  // Adds a history entry, with `view` instead of the camera's view.
   push(view) {
     history.pushState(null, "", this.#hash(view));
   }

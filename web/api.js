@@ -4,9 +4,9 @@ import { accessToken, bearer, askForToken } from "./access.js";
 
 const RETRYABLE_STATUSES = new Set([0, 429, 502, 503]); // 0: no response
 
-// Error response (problem+json of RFC 9457), or no response at all: status 0.
+// Error response (problem+json of RFC 9457). Status 0 if there was no response.
 export class ApiError extends Error {
-  // Takes the members of a problem+json.
+  // Takes the members of a problem+json object.
   constructor({ title, status, detail, request_id: requestId, retry_after_seconds: retryAfterSeconds, ...more }) {
     super(title ?? "The request failed");
     this.name = "ApiError";
@@ -16,7 +16,7 @@ export class ApiError extends Error {
     this.requestId = requestId ?? "";
     this.retryAfterSeconds = retryAfterSeconds;
     const { errors, line, column } = more;
-    Object.assign(this, { errors, line, column }); // places in a rejected text
+    Object.assign(this, { errors, line, column }); // positions in a rejected text
   }
 
   // Returns whether the same request may succeed later.
@@ -33,7 +33,7 @@ export function isAbort(error) {
   return error?.name === "AbortError";
 }
 
-// Returns the error to throw if a response breaks off with `error`.
+// Returns the error to throw when `error` interrupts a response.
 export const toApiError = (error) => (isAbort(error) ? error : connectionError(error.message));
 
 async function problemOf(response) {
@@ -80,7 +80,7 @@ export function postJson(path, text) {
   return getJson(path, { method: "POST", headers, body: text });
 }
 
-// Resolves to a response body. Throws ApiError if the body breaks off.
+// Resolves to a response body. Throws ApiError if the body is truncated.
 const whole = (body) =>
   body.catch((error) => {
     throw toApiError(error);
@@ -99,7 +99,7 @@ export function serverTiming(header) {
   return timing;
 }
 
-// Returns the service's warning about a picture that shows little, or "".
+// Returns the service's warning about the picture of a response, or "".
 export const warningOf = (response) => response.headers.get("Orrery-Warning") ?? "";
 
 // Fetches a picture as {png, stats}. A picture from the browser's cache has the figures of its first render.

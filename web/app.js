@@ -1,5 +1,5 @@
-// Page: the store has its state, the player chooses the picture, views show the state, and the address bar
-// names it.
+// The page. The store has its state, the player chooses the picture, views show the state, and the address
+// bar writes it to the URL.
 
 import { attachAccuracy } from "./accuracy.js";
 import { AddressBar } from "./address-bar.js";
@@ -35,7 +35,7 @@ const store = new Store({
   catalog: null, // samples and techniques of the service, null until they are loaded
   limits: { side: 4096, pixels: 2 ** 24, samples: 4096, frames: 3600 },
   scene: null, // scene on the stage, null while one is being opened
-  shows: "", // picture on the stage: "preview", "stream", "refining", "still" or, if another one is due, ""
+  shows: "", // picture on the stage: "preview", "stream", "refining" or "still"; "" while another one is pending
   figures: null, // {kind, ...} of the picture on the stage
   warning: "",
   failure: null, // {error, actions}
@@ -84,7 +84,7 @@ const player = new Player(camera, view, {
 const accuracy = attachAccuracy(store, {
   picture: () => store.get().scene && pictureToChart(page(), camera.view),
   withBudget: (budget) => pictureAtRest(page({ plan: "", ...budget }), camera.view),
-  // The error view needs a resolved budget; falls back to the picture without a budget.
+  // The error view needs a plan instead of a budget. Until the service has chosen one, drops the budget.
   shownAddress: () => store.get().scene && frameUrl({ ...player.picture, seconds: 0, error: 0 }),
   pause: () => store.get().playing && setPlaying(false),
   set: change,
@@ -131,7 +131,7 @@ const otherScenes = [
 function unknownScene({ requestId }) {
   const { ref } = store.get();
   const name = ref.length > 40 ? `${ref.slice(0, 12)}…` : ref;
-  const detail = "The service has no such scene. It keeps posted scenes only for a limited time.";
+  const detail = "The service does not have this scene. It keeps posted scenes only for a limited time.";
   return { title: `Unknown scene “${name}”`, detail, requestId };
 }
 
@@ -152,7 +152,7 @@ async function applyText(text) {
   showStage();
 }
 
-// Scrolls the stage into view: a narrow page may have scrolled it away.
+// Scrolls the stage into view, because a narrow page may have scrolled it away.
 function showStage() {
   stage.scrollIntoView({ block: "nearest" });
 }
@@ -172,7 +172,7 @@ function setPlaying(playing) {
   address.save();
 }
 
-// Applies the hash after the user went back, forward, or edited the address.
+// Applies the hash after the user has navigated in the history or edited the address.
 function loadHash() {
   const { settings, view: linked } = parseHash(location.hash);
   const { catalog, scene, playing } = store.get();

@@ -1,4 +1,4 @@
-// Delays between retries: doubling from 0.5 s to 16 s, or given by Retry-After.
+// Delays between retries: doubling from 0.5 s to 16 s, or taken from Retry-After.
 
 const FIRST = 0.5;
 const LONGEST_SECONDS = 16;
@@ -20,9 +20,9 @@ export class Backoff {
   }
 }
 
-// Runs `task` until it succeeds. Throws its error if the error is not retryable.
-// Returns undefined if the task is no longer `wanted()` after a wait.
-// Calls `onWaiting(error, seconds)` before each wait. wakeAll() ends every wait.
+// Runs `task` until it succeeds. Throws its error if the error is not retryable or the task is no longer
+// `wanted()`. Returns undefined if the task is no longer wanted after a wait. Calls `onWaiting(error,
+// seconds)` before each wait. wakeAll() ends every wait.
 export async function withRetries(task, onWaiting, wanted = () => true) {
   for (const backoff = new Backoff(); wanted();) {
     try {

@@ -1,4 +1,4 @@
-// Predicted outcome of the page's budgets, which the service estimates from parts of the picture.
+// Predicted outcome of the page's budgets, which the service estimates from some pixels of the picture.
 
 import { getJson } from "./api.js";
 import { unit } from "./bound.js";
@@ -6,7 +6,7 @@ import { duration } from "./pareto-front.js";
 import { roundedUp } from "./progress.js";
 import { frameUrl, queryOf } from "./urls.js";
 
-const TIMEOUT_MS = 3000; // limit; a heavier scene gets no prediction
+const TIMEOUT_MS = 3000; // for all budgets; a heavier scene has no prediction
 
 export class BudgetPrediction {
   #onChange;
@@ -18,7 +18,7 @@ export class BudgetPrediction {
     this.#onChange = onChange;
   }
 
-  // Predicts `pictures`, the picture at rest with each budget. Requests equal pictures once.
+  // Predicts `pictures`, the picture at rest with each budget. Reuses the last prediction for equal pictures.
   async predict(pictures) {
     this.cancel();
     const key = pictures.map(frameUrl).join();
@@ -51,7 +51,7 @@ async function predictAll(pictures, signal) {
       texts.push(predictionText(picture, forecast));
     }
   } catch {
-    // The picture fails in the same way and reports it.
+    // The render of the picture fails in the same way and reports the error.
   }
   return texts;
 }

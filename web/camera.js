@@ -19,7 +19,7 @@ const mix = (a, p, b, q) => a.map((value, axis) => p * value + q * b[axis]);
 const unit = (a) => a.map((value) => value / Math.hypot(...a));
 const cross = ([a, b, c], [x, y, z]) => [b * z - c * y, c * x - a * z, a * y - b * x];
 
-// Returns the frame of the scene's own camera:
+// Returns the coordinate frame of the scene's own camera:
 // `elevation`: degrees of the eye above the plane with the normal `pole`
 // `out`, `side`: unit vectors in this plane, towards the eye and to its right
 // `metres`: distance from eye to target
@@ -35,7 +35,7 @@ function frameOf({ eye = [0, 0, 4], look_at: lookAt = [0, 0, 0], up = [0, 1, 0] 
   return { pole, elevation, out, side: cross(pole, out), metres: Math.hypot(...offset), level };
 }
 
-// Returns the degrees of the scene's own eye above the plane with the normal `up`.
+// Returns the elevation of the scene's own eye above the plane with the normal `up`, in degrees.
 export const elevationOf = (camera) => frameOf(camera).elevation;
 
 export class OrbitCamera {
@@ -91,7 +91,7 @@ export class OrbitCamera {
     this.#keepAllowed();
   }
 
-  // Glides back to the scene's own view by the shorter way.
+  // Glides back to the scene's own view along the shorter arc.
   reset() {
     const { azimuth, time } = this.#now;
     this.#goal = { ...defaultView(), azimuth: 360 * Math.round(azimuth / 360), time };
@@ -144,7 +144,7 @@ export class OrbitCamera {
     return distance * 2 * this.#own.metres * Math.tan(radians(fov / 2));
   }
 
-  // Clamps the goal: distance within its limits, elevation off the pole and above the floor.
+  // Clamps the goal. Keeps the distance within its limits, and the eye off the poles and above the floor.
   #keepAllowed() {
     const { elevation: own, metres, pole, level } = this.#own;
     const goal = this.#goal;

@@ -33,7 +33,7 @@ export class ChartDialog {
       mark.setAttribute("role", "button");
       mark.setAttribute("tabindex", "0");
       mark.setAttribute("aria-label", line);
-      mark.parentNode.append(mark); // above the others, in tab order of cost
+      mark.parentNode.append(mark); // draws it above the others, and sorts the tab order by cost
     }
   }
 

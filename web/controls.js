@@ -2,16 +2,16 @@
 // `on` has
 //   rotate(azimuth, elevation) in degrees
 //   dolly(factor) -> the applied factor
-//   pan(right, up) in pixels of the camera's own motion
+//   pan(right, up), motion of the camera in pixels
 //   isPanning() -> whether plain drags and arrows pan
 //   reset(), togglePlay(), hold(bool)
 
 const DOLLY_STEP = 0.95; // distance factor of a wheel notch
 export const ZOOM_STEP = DOLLY_STEP ** 3; // distance factor of a key or a button
 export const TURN_STEP = 180 / 8; // degrees for an arrow key or a button
-export const PAN_STEP = 1 / 8; // fraction of the stage's height for the same
-const FINE_FACTOR = 1 / 22.5; // fraction of a step with shift: one degree
-const DRAG_THRESHOLD = 3; // pixels; less is a click
+export const PAN_STEP = 1 / 8; // fraction of the stage's height for an arrow key or a button
+const FINE_FACTOR = 1 / 22.5; // factor of a step with Shift, which turns by one degree
+const DRAG_THRESHOLD = 3; // pixels; a shorter drag is a click
 const WHEEL_NOTCH = 100; // pixels of wheel movement that count as one step
 const PINCH_GAIN = 8; // a trackpad pinch arrives as small wheel movements with ctrlKey
 
@@ -34,7 +34,7 @@ function attachPointers(stage, on) {
   let dragging = false;
   let pans = false;
 
-  // Returns the distance of two fingers, and their midpoint relative to the middle of the stage.
+  // Returns the distance between two fingers, and their midpoint relative to the middle of the stage.
   const pinch = () => {
     const [a, b] = [...pointers.values()];
     const { left, top, width, height } = stage.getBoundingClientRect();
@@ -106,7 +106,7 @@ function attachWheel(stage, on) {
   );
 }
 
-// Handles keys on the stage and, if the page does not scroll, on the body. Form fields lose no key. Space
+// Handles keys on the stage and, if the page does not scroll, on the body. Ignores keys in form fields. Space
 // plays and pauses even if the page scrolls.
 function attachKeys(stage, on) {
   const arrow = (right, up) => (event) =>

@@ -1,7 +1,7 @@
 // Estimates of render times, from measured pictures.
 
 export class Cost {
-  #ms = new Map(); // per sample of a pixel, by scene and technique
+  #ms = new Map(); // milliseconds per sample of a pixel, by scene and technique
 
   // Records that `picture` took `ms`.
   note(picture, ms) {
@@ -12,7 +12,8 @@ export class Cost {
     return this.#ms.has(kindOf(picture));
   }
 
-  // Returns NaN before the first picture of the same scene and technique. Assumes equal cost per sample.
+  // Returns the expected render time, assuming equal cost per sample. Returns NaN before the first picture of
+  // the same scene and technique.
   expectedMs(picture) {
     return (this.#ms.get(kindOf(picture)) ?? NaN) * amount(picture);
   }

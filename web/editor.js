@@ -1,5 +1,5 @@
-// Scene editor: edits and applies the text, lists errors and jumps to them. Typing posts the text to check
-// it: the service evicts unused scenes.
+// Scene editor: edits and applies the text, lists errors and jumps to them. Posts the text after each edit to
+// check it. The service later evicts unused scenes.
 
 import { Gutter } from "./gutter.js";
 import { locate, offsetOf, placeOf } from "./pointer.js";
@@ -16,7 +16,7 @@ export class Editor {
   #draft = ""; // unapplied edit that another scene has replaced
   #timer = 0;
   #attempt = 0; // counts edits, loads and attempts, to drop late responses
-  #shownError = ""; // content of the card
+  #shownError = ""; // content of the error card
 
   // `parts`: {text, card, note, lines, apply, restore}. `onApply` and `onCheck` take the text and return a
   // promise. The card shows the errors that they throw.

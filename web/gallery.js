@@ -19,7 +19,7 @@ function kindOf(sample) {
   return start in HEADINGS ? start : "";
 }
 
-// Returns the index that `key` leads to from the option `at`, or null if it leads nowhere.
+// Returns the index of the option that `key` moves the focus to from the option `at`, or null.
 export function nextOption(key, at, titles) {
   const last = titles.length - 1;
   const moves = {
@@ -41,7 +41,7 @@ export class Gallery {
   #root;
   #onPick;
 
-  // Lists the samples of the catalog in `root`. Calls `onPick(name)` if the user picks one.
+  // Lists the samples of the catalog in `root`. Calls `onPick(name)` when the user picks one.
   constructor(root, store, onPick) {
     this.#root = root;
     this.#onPick = onPick;
@@ -95,7 +95,7 @@ export class Gallery {
     list.role = "group";
     list.ariaLabel = HEADINGS[kind] || "Scenes";
     const heading = element("li", HEADINGS[kind], "heading");
-    heading.ariaHidden = "true"; // the group's label says it
+    heading.ariaHidden = "true"; // the group's label has the same text
     list.append(...(HEADINGS[kind] ? [heading] : []), ...members.map((sample) => this.#row(sample)));
     return [list];
   }

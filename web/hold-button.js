@@ -15,7 +15,7 @@ export class HoldButton {
     });
     for (const event of ["pointerup", "pointercancel", "lostpointercapture", "blur"])
       button.addEventListener(event, () => this.#set(false));
-    // Clicks without a pointer, as from a screen reader, toggle the state.
+    // Clicks without a pointer, such as those of a screen reader, toggle the state.
     button.addEventListener("click", ({ detail }) => detail === 0 && this.#set(!this.#held));
     button.addEventListener("contextmenu", (event) => event.preventDefault());
     const isHandled = ({ key: pressed, target }) =>

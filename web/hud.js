@@ -14,7 +14,7 @@ const FIELDS = {
   rmse: ["error", "Root mean square error per pixel in linear radiance, estimated from the samples"],
 };
 const REFRESH_MS = 250;
-const WINDOW_MS = 1500; // window of the frame rate
+const WINDOW_MS = 1500; // time over which the frame rate is measured
 
 const short = new Intl.NumberFormat("en", { notation: "compact", maximumSignificantDigits: 3 });
 

@@ -5,8 +5,8 @@ import { chunks } from "./stream.js";
 import { chartBody, jobBody } from "./urls.js";
 
 // Renders a picture as a job. Returns {png, stats}, or null if the service accepts no jobs. Calls
-// `onProgress({part, secondsLeft})` on progress. Cancels the job if it has not ended. Throws ApiError, or
-// AbortError once `signal` fires.
+// `onProgress({part, secondsLeft})` on progress. Throws ApiError, or AbortError once `signal` fires. Cancels
+// an unfinished job before it throws.
 export async function renderJob(picture, signal, onProgress) {
   const address = await postJob("v1/jobs", jobBody(picture));
   if (!address) return null;
@@ -29,7 +29,7 @@ export async function makeChart(picture, extent, signal, onProgress) {
   return { chart, drawing };
 }
 
-// Follows a job to its end. Returns its last state.
+// Waits for the end of a job. Returns its last state.
 async function followJob(address, signal, onProgress) {
   let over = false;
   try {

@@ -11,8 +11,8 @@ export const DEFAULTS = Object.freeze({
   samples: 0,
   size: "fit",
   plan: "", // query of frame.png without view and size, from a chart's point
-  seconds: 0, // budgets; 0: none
-  error: 0,
+  seconds: 0, // time budget, 0 for no budget
+  error: 0, // error budget, 0 for no budget
 });
 export const DEFAULT_VIEW = Object.freeze({
   azimuth: 0,

@@ -1,4 +1,4 @@
-// Messages on and under the stage: progress, a request that is retried, an error, a warning.
+// Messages on and under the stage: progress, retries, errors and warnings.
 
 import { hideProblem, showProblem } from "./problem.js";
 import { showProgress } from "./progress.js";

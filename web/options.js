@@ -4,8 +4,8 @@ import { fixedSize, MODES, within } from "./size.js";
 
 const SAMPLES = [1, 4, 16, 64];
 
-// Fills `select` with `options`, each [value, label, title]. Adds `value` if it is missing: a link may ask
-// for it.
+// Fills `select` with `options`, each [value, label, title]. Adds `value` if it is missing, because a link
+// may contain any value.
 function fill(select, options, value) {
   const isChosen = ([key]) => String(key) === String(value);
   const all = options.some(isChosen) ? options : [...options, [value, value]];
@@ -43,7 +43,8 @@ export class Options {
   }
 }
 
-// Returns whether the service renders pictures of a fixed size. null fits: the page chooses the size.
+// Returns whether the limits of the service allow a fixed size. Returns true for null, a size chosen by the
+// page.
 function fits(size, { side, pixels }) {
   return !size || within(size, side, pixels).width === size.width;
 }

@@ -5,12 +5,12 @@ import { decode } from "./view.js";
 
 export class Overlay {
   #box;
-  #canvases; // the visible one and the one before
+  #canvases; // the visible one and the previous one
   #pictures = new Map(); // address -> promise of a bitmap
   #wanted = "";
   #ahead = []; // addresses of the last prefetch
 
-  // `box` holds two <canvas>.
+  // `box` contains two <canvas> elements.
   constructor(box) {
     this.#box = box;
     this.#canvases = [...box.querySelectorAll("canvas")];
@@ -34,7 +34,8 @@ export class Overlay {
     }
   }
 
-  // Resolves once the picture is visible or another one is wanted. Throws ApiError if it is still wanted.
+  // Resolves once the picture is visible or another one is wanted. Throws ApiError if the picture is still
+  // wanted and cannot be fetched.
   async show(address) {
     this.#wanted = address;
     const bitmap = await this.#picture(address).catch((error) => {

@@ -1,29 +1,29 @@
 // Frame rate and quality level of an orbit. Every frame is rendered, so slow frames slow the orbit down. The
-// stream is then requested again: at a coarser level if it stutters, else with fewer frames and a wider step.
-// A finer level is requested if it would not stutter.
+// stream is then requested again, at a coarser level if it stutters, else at a lower frame rate with wider
+// steps. A finer level is requested if it would not stutter.
 
 import { firstWithin } from "./cost.js";
 
 const MAX_FPS = 30;
 const SMOOTH_FPS = 12; // an orbit stutters below this
 const FINER_FPS = 16; // predicted rate that a finer level needs
-const FINER_AFTER_MS = 200; // shortest measurement before a finer level
+const FINER_AFTER_MS = 200; // shortest measurement of the rate before a finer level
 const RETRY_MS = 5000; // delay before a level that was too slow is retried
-const TOLERANCE = 0.85; // smallest fraction of the planned rate
-const WINDOW_MS = 1000; // shortest measurement of the rate, with three frames or one gap of LONG_GAP_MS
-const LONG_GAP_MS = 1500;
+const TOLERANCE = 0.85; // smallest accepted fraction of the requested rate
+const WINDOW_MS = 1000; // shortest measurement of the rate with at least three intervals
+const LONG_GAP_MS = 1500; // shortest measurement with fewer intervals
 const MAX_STEP_DEGREES = 10; // degrees; an orbit with wider steps is a slide show
 
 export class Pace {
   fps = MAX_FPS;
   level = 0; // 0: as requested; each level above is coarser
-  #kind = ""; // picture options that the level was found for
+  #kind = ""; // picture options for which the level was found
   #slow = { level: -1, until: 0 }; // last level that was too slow
   #times = [];
   #longestMs = 0; // longest work for a frame in #times
 
-  // Starts an orbit of `picture` at `level`, or at the level found before. A new window size keeps that
-  // level, a new choice of the user does not.
+  // Starts an orbit of `picture` at `level`. Keeps the level found before if scene, technique, samples and
+  // fixed size are the same.
   play({ id, width, height, fills, technique, samples }, level = 0) {
     const kind = [id, fills || `${width}x${height}`, technique, samples].join();
     if (kind === this.#kind) return;
@@ -39,8 +39,9 @@ export class Pace {
     this.#longestMs = 0;
   }
 
-  // Records a frame shown at `now` (ms) that took the service `workMs`. `costs`: relative costs of the
-  // levels, decreasing. Returns whether fps or level changed, and the stream should be requested again.
+  // Records a frame shown at `now` (ms) for which the service worked `workMs`. `speed`: degrees per second.
+  // `costs`: relative costs of the levels, decreasing. Returns true if fps or level changed, so that the
+  // stream must be requested again.
   note(now, workMs, speed, costs) {
     const expected = (ms) => costs.map((cost) => (ms * cost) / costs[this.level]);
     if (workMs > 1000 / SMOOTH_FPS && this.level < costs.length - 1) {

@@ -8,8 +8,8 @@ const VIEW_KEYS = ["azimuth_degrees", "elevation_degrees", "fov_degrees", "dista
 const SHORT_VIEW_KEYS = ["azimuth", "elevation", "fov"];
 
 // Returns the stops as {point, place, line}: the chart's point, its position by log cost from 0 (fastest) to
-// 1, and its description. Skips a point that costs more than a stop without a smaller mean error, even if the
-// rounds cannot distinguish the two.
+// 1, and its description. Skips a point whose mean error is not smaller than that of a cheaper stop, even if
+// the difference is not significant.
 export function stopsOf({ front, points, noise_floor: noiseFloor }) {
   const stops = [];
   let nearest = Infinity;
@@ -37,8 +37,8 @@ export function duration(seconds) {
   return seconds < 99.5 ? `${rounded(seconds)} s` : `${Math.round(seconds / 60)} min`;
 }
 
-// Returns a text such as "0.8 s, error ≤ 0.004 (95 % confidence), whitted, depth 5, 16 samples, float". The time is
-// predicted.
+// Returns a text such as "0.8 s, error ≤ 0.004 (95 % confidence), whitted, depth 5, 16 samples, float". The
+// time is predicted.
 export function lineOf({ full_size: fullSize, interval, rmse, technique, max_depth: depth, samples, precision }) {
   const error = interval
     ? `error ≤ ${roundedUp(interval.rmse.high)} (95 % confidence)`
@@ -51,11 +51,11 @@ export function lineOf({ full_size: fullSize, interval, rmse, technique, max_dep
 export function planOf({ plan, samples }) {
   const query = new URLSearchParams(plan);
   for (const key of [...VIEW_KEYS, ...SHORT_VIEW_KEYS, "width", "height"]) query.delete(key);
-  query.set("samples", samples); // a plan may leave them to the scene
+  query.set("samples", samples); // a plan without samples uses those of the scene
   return String(query);
 }
 
-// Parses the plan of a link into {technique, samples, more}. `more` is the rest as a query.
+// Parses the plan of a link into {technique, samples, more}. `more` contains the other options as a query.
 export function optionsOf(plan) {
   const query = new URLSearchParams(plan);
   const [technique, samples] = [query.get("technique") ?? "", Number(query.get("samples"))];

@@ -1,6 +1,5 @@
-// Picture requests of the page: options from the user and the link, at the size of the stage.
-// `page` has the values of the store, with a scene, and `box`, the size of the stage. `view` is that of the
-// camera.
+// Picture requests of the page: options from the user and the link, at the size of the stage. `page` has the
+// values of the store, with a scene, and `box`, the size of the stage. `view` is the camera's view.
 
 import { amount } from "./cost.js";
 import { optionsOf } from "./pareto-front.js";
@@ -44,8 +43,8 @@ export function movingPictures(page, purpose, view) {
   return pictures.filter((picture, at) => at === 0 || amount(picture) < amount(pictures[at - 1]));
 }
 
-// Returns the picture at rest. With a budget, `samples` is the user's choice, 0 if open, and `own` is the
-// scene's.
+// Returns the picture at rest. With a budget, `samples` is the number that the user has chosen, or 0, and
+// `own` is the scene's number.
 export function pictureAtRest(page, view) {
   const picture = pictureFor(page, "still", view);
   const { scene, limits, samples, seconds, error } = page;

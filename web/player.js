@@ -21,9 +21,9 @@ const DRAFT_MS = 100; // a draft precedes a first picture that takes longer
 //   pictureAtRest(view) -> {picture, isRequested} or null. isRequested: the user has chosen the samples
 //   repost() -> promise; posts the scene again and refreshes the player
 //   drawn(kind, figures), retrying(error, seconds), failed(error), progress(figures or null)
-//   stopped() if another picture is due
-//   settled() if the view no longer moves
-//   finished() if the picture is final
+//   stopped() when another picture is pending
+//   settled() when the view no longer moves
+//   finished() when the picture is final
 export class Player {
   speed = 20; // degrees per second
   streamFrames = 3600;
@@ -39,7 +39,7 @@ export class Player {
   #work = null; // {kind, key, abort} of the current stream or still
   #shown = ""; // address of the still on the canvas
   #shownSamples = 0; // samples of the picture on the canvas
-  #shownLocation; // address that reproduces a picture made to a budget
+  #shownLocation; // address that reproduces a picture rendered to a budget
   #shownFigures; // figures of the picture on the canvas
   #shownId = ""; // id of the scene on the canvas
   #cost = new Cost(); // render times
@@ -103,7 +103,7 @@ export class Player {
     this.refresh();
   }
 
-  // Makes the next refresh fetch even an equal picture.
+  // Makes the next refresh fetch the picture even if it is unchanged.
   invalidate() {
     this.#stop();
     this.#shown = this.#shownId = "";
@@ -143,7 +143,7 @@ export class Player {
     this.refresh();
   }
 
-  // Shows a preview. One is in flight at a time; the next one catches up with the camera.
+  // Shows a preview of the current view, unless another preview is in flight.
   async #preview() {
     const start = performance.now();
     const waits = this.#isPreviewing || start < this.#previewFrom;
@@ -160,7 +160,7 @@ export class Player {
       else bitmap.close();
       this.#delay.note(picture, performance.now() - start);
     } catch (error) {
-      // The following still fails in the same way and reports it.
+      // The still that follows fails in the same way and reports the error.
       this.#previewFrom = performance.now() + 1000 * (error.retryAfterSeconds ?? 1);
     } finally {
       this.#isPreviewing = false;
@@ -188,14 +188,14 @@ export class Player {
   #startStill() {
     const rest = this.#on.pictureAtRest(this.#camera.view);
     if (!rest) return;
-    // A held orbit shows one sample without a budget.
+    // While an orbit is held, shows one sample without a budget.
     const picture = this.#isPlaying ? { ...rest.picture, samples: 1, seconds: 0, error: 0 } : rest.picture;
     const key = frameUrl(picture);
     if (this.#work?.kind === "still" && this.#work.key === key) return;
     this.#stop();
     const { width, height, samples } = this.#shownPicture(picture) ?? {};
     if (width) this.#on.drawn("still", { ...this.#shownFigures, width, height });
-    const shown = samples <= picture.samples ? samples : 0; // fewer samples may be wanted than are shown
+    const shown = samples <= picture.samples ? samples : 0; // 0 also if more samples are shown than wanted
     this.#run("still", key, async (signal) => {
       await this.#draft({ ...picture, samples: 1 }, signal);
       if (hasBudget(picture)) await this.#renderToBudget(picture, signal);
@@ -214,7 +214,7 @@ export class Player {
     const { png, stats } = await getFrame(frameUrl(picture), signal);
     const bitmap = await decodeUnlessAborted(signal, png);
     const plan = new URLSearchParams(stats.location?.split("?")[1]);
-    const samples = Number(plan.get("samples") ?? picture.own); // a plan may leave them to the scene
+    const samples = Number(plan.get("samples") ?? picture.own); // a plan without samples uses those of the scene
     this.#draw(frameUrl(picture), bitmap, picture, "still", { ...stats, samples });
     this.#shownLocation = stats.location;
   }
@@ -230,7 +230,7 @@ export class Player {
     this.#run("stream", key, (signal) => this.#stream(signal));
   }
 
-  // Plays streams one after another. Each ends after `streamFrames` frames or if the pace changes.
+  // Plays streams one after another. Each ends after `streamFrames` frames or when the pace changes.
   async #stream(signal) {
     const pace = this.#pace;
     for (;;) {

@@ -1,5 +1,5 @@
-// JSON Pointers (RFC 6901) resolved in a JSON text, which may be broken after the value. Not recursive: no
-// nesting is too deep.
+// Resolves JSON Pointers (RFC 6901) in a JSON text, which may be malformed after the value. Not recursive, so
+// the nesting depth is unlimited.
 
 const SPACE = /[\s,:]*/y;
 const PLAIN_TOKEN = /[^\s,:{}[\]"]*/y;

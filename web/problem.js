@@ -1,4 +1,4 @@
-// Error card: message, places (one entry each), actions, and the request id for a report.
+// Error card: message, places (one entry each), actions, and the request id for a bug report.
 
 export function element(name, text, className) {
   const made = document.createElement(name);
@@ -24,8 +24,8 @@ export function placesOf(error) {
   return places;
 }
 
-// Fills and shows `card`. Calls `onPlace` with the place that the user picks; without it places are plain
-// text. `actions` are buttons, each [label, function].
+// Fills and shows `card`. Calls `onPlace` with the place that the user picks. Without `onPlace`, places are
+// plain text. `actions` are buttons, each [label, function].
 export function showProblem(card, error, onPlace, actions = []) {
   const title = element("h2", error.title ?? error.message);
   const close = element("button", "", "close");

@@ -25,7 +25,8 @@ export function progressText({ shown, end, rmse, part, secondsLeft }) {
   return words.join(" · ");
 }
 
-// Shows `figures` as in progressText(). {}: nothing is known; null: nothing is being rendered.
+// Shows the progress. `figures`: as in progressText(), {} if nothing is known, null if nothing is being
+// rendered.
 export function showProgress(bar, label, figures) {
   bar.hidden = label.hidden = !figures;
   if (!figures) return;

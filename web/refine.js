@@ -1,5 +1,5 @@
 // Progressive refinement of a view at rest: one stream of pictures, each with about twice the samples of the
-// last.
+// previous one.
 
 import { getFrame, request, warningOf } from "./api.js";
 import { renderJob } from "./job.js";
@@ -9,9 +9,9 @@ import { frameUrl, refinementUrl } from "./urls.js";
 import { decode } from "./view.js";
 
 const JOB_MS = 1500; // longer single renders become jobs, which report progress
-const MAX_UNREQUESTED_MS = 20_000; // longest estimate for samples that the user did not ask for
+const MAX_UNREQUESTED_MS = 20_000; // longest estimated render of samples that the user has not requested
 const TICK_MS = 250;
-const TIME_LIMIT_STATUSES = new Set([422, 504]); // statuses of pictures that exceed the time limit of a request
+const TIME_LIMIT_STATUSES = new Set([422, 504]); // too many rays, or a timeout
 
 export class Refiner {
   #jobs = true; // false: the service accepts no jobs
@@ -30,8 +30,9 @@ export class Refiner {
   }
 
   // Renders `picture` from few samples to all. `shown`: samples on the canvas, 0 if it shows another view.
-  // `isRequested`: render all samples, however long they take. Calls draw(picture, bitmap, stats) for each picture
-  // and progress({shown, end, rmse, part, secondsLeft}). Without `part`, `secondsLeft` is an estimate.
+  // `isRequested`: render all samples, however long they take. Calls draw(picture, bitmap, stats) for each
+  // picture and progress({shown, end, rmse, part, secondsLeft}). Without `part`, `secondsLeft` is an
+  // estimate.
   async refineToEnd(picture, { shown, isRequested }, signal, on) {
     const end = picture.samples;
     const at = { shown, end };
@@ -111,7 +112,8 @@ export class Refiner {
   }
 }
 
-// Calls `onProgress({secondsLeft})` every TICK_MS. `expected()`: milliseconds from the last restart to the end.
+// Calls `onProgress({secondsLeft})` every TICK_MS. `expected()`: milliseconds from the last restart to the
+// end.
 function ticking(expected, onProgress) {
   let start = performance.now();
   const tick = () => onProgress({ secondsLeft: (expected() - (performance.now() - start)) / 1000 });

@@ -20,8 +20,8 @@ const RESET_LABELS = {
   error: "Remove the error limit",
 };
 
-// Returns {settings, label} for the rejected settings: the defaults to set instead and that action in words.
-// Returns null if the error names none of them.
+// Returns {settings, label} for the rejected settings: their defaults, and the label of a button that sets
+// them. Returns null if the error names no setting of the link.
 export function rejectedSettings(error, current) {
   const ofPlan = new URLSearchParams(current.plan);
   const names = placesOf(error)

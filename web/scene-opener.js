@@ -1,4 +1,4 @@
-// Opens scenes in the page. A scene that is opened later replaces one that is still on its way.
+// Opens scenes in the page. A scene that is opened later replaces one that is still loading.
 
 import { withRetries } from "./backoff.js";
 import { factsOf } from "./scenes.js";

@@ -33,7 +33,7 @@ export class SceneLibrary {
     return this.samples.find((sample) => sample.name === ref);
   }
 
-  // Opens the scene `ref`. Throws ApiError, with status 404 if neither page nor service has the id.
+  // Opens the scene `ref`. Throws ApiError, with status 404 if neither the page nor the service knows the id.
   async open(ref) {
     const sample = this.sample(ref);
     const text = this.#texts.get(ref) ?? (sample ? await getText(sample.href) : undefined);

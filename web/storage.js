@@ -1,4 +1,4 @@
-// JSON in the session storage, which lasts as long as the tab and may be full or forbidden.
+// JSON in the session storage, which lasts as long as the tab and may be full or disabled.
 
 export function recall(key) {
   try {

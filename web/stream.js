@@ -1,5 +1,5 @@
-// Reads application/x-orrery-frames: [4 bytes, big-endian: length of the header][header, JSON][PNG], repeated. The
-// header's `bytes` is the length of the PNG.
+// Reads application/x-orrery-frames: [4 bytes, big-endian: length of the header][header, JSON][PNG],
+// repeated. The header's `bytes` is the length of the PNG.
 
 import { toApiError, connectionError } from "./api.js";
 

@@ -9,7 +9,7 @@ import { BudgetPrediction } from "./budget-prediction.js";
 import { progressText } from "./progress.js";
 import { frameUrl, queryOf } from "./urls.js";
 
-const CHART_EXTENT = { samples: 16, rounds: 3, width: 200 }; // chart size; takes some seconds, with paths a minute
+const CHART_EXTENT = { samples: 16, rounds: 3, width: 200 }; // a chart takes some seconds, or a minute with paths
 const OFFER = "The chart renders this view with different settings and shows the time and error of each.";
 const SLIDER_STEPS = 1000; // steps of the range input, finer than the stops
 
@@ -22,7 +22,7 @@ export class Tradeoff {
   #chart = null;
   #stops = [];
   #at = -1; // index of the chosen stop, or -1
-  #replaced = null; // address of the picture that a held one replaced
+  #replaced = null; // address of the picture that is hidden while a button is held
   #work = null; // AbortController of the chart being made
   #prediction;
   #predicted = ""; // prediction shown while there is no chart
@@ -51,7 +51,7 @@ export class Tradeoff {
     this.#showParts();
   }
 
-  // Drops the chart if `picture` has another scene or technique. null: no scene is shown.
+  // Drops the chart if `picture` has another scene or technique. `picture` is null while no scene is shown.
   setPicture(picture) {
     const kind = picture ? `${picture.id} ${picture.technique}` : "";
     if (kind === this.#kind) return;
@@ -60,7 +60,7 @@ export class Tradeoff {
     this.#drop();
   }
 
-  // Predicts the budgets of the picture at rest while there is no chart.
+  // Predicts the outcome of the budgets for the picture at rest, unless there is a chart.
   predictBudgets() {
     if (!this.#chart && !this.#work) this.#prediction.predict(this.#parts.budgets.map(this.#on.withBudget));
   }
@@ -181,7 +181,7 @@ export class Tradeoff {
     text.textContent = text.title = line;
     this.#on.pause();
     const elsewhere = this.#isOtherView ? "Measured for another view. " : "";
-    this.#showNote(`${elsewhere}Without a reference: ${boundText(fieldsOf(this.#point.certificate))}`);
+    this.#showNote(`${elsewhere}Bound without the reference: ${boundText(fieldsOf(this.#point.certificate))}`);
     this.#showPicture(this.#address());
     this.#fetchAll();
   }
@@ -226,7 +226,7 @@ export class Tradeoff {
     }
   }
 
-  // Shows the picture at `address` while held, then the former one.
+  // Shows the picture at `address` while held, then the previous one.
   #hold(held, address) {
     if (!held) {
       if (this.#replaced) this.#showPicture(this.#replaced);

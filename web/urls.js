@@ -1,9 +1,9 @@
 // Addresses of pictures, relative so that the page works below any path. Numbers are rounded, so equal views
 // have equal addresses and hit the browser's cache.
 
-// Returns the query of a picture {id, azimuth, elevation, distance, pan, width, height}, with {isAnimated, time}
-// in a moving scene. Optional: {fov, technique, samples}, `more` options as a query, budgets {seconds,
-// error}. `location`: address that reproduces a picture made to a budget.
+// Returns the query of a picture {id, azimuth, elevation, distance, pan, width, height}, with {isAnimated,
+// time} in a moving scene. Optional: {fov, technique, samples}, `more` options as a query, budgets {seconds,
+// error}. `location`: address that reproduces a picture rendered to a budget.
 export function queryOf(picture) {
   const query = new URLSearchParams({
     azimuth: round(picture.azimuth, 2),

@@ -45,7 +45,7 @@ export class View {
     this.#blend(bitmap, 0, performance.now(), fades ? FADE_MS : 0);
   }
 
-  // Shows only the thumbnail at this address ("": none) until a picture is drawn.
+  // Shows only the thumbnail at this address until a picture is drawn. Shows nothing for "".
   announce(thumbnail) {
     this.#canvas.hidden = true;
     this.#newest = null;
@@ -53,7 +53,7 @@ export class View {
     if (thumbnail) this.#poster.src = thumbnail;
   }
 
-  // Fades in the bitmap. `shown`: its weight on the canvas so far.
+  // Fades in the bitmap. `shown`: weight of the bitmap on the canvas, 0 to 1.
   #blend(bitmap, shown, start, duration) {
     if (this.#newest !== bitmap) return bitmap.close();
     const part = duration > 0 ? Math.min(1, Math.max(shown, (performance.now() - start) / duration)) : 1;

@@ -3,7 +3,7 @@
 namespace orrery {
 namespace {
 
-// Grid whose resolution follows the local density: crowded cells hold nested grids (Jevans and Wyvill,
+// Grid whose resolution follows the local density: crowded cells contain nested grids (Jevans and Wyvill,
 // "Adaptive Voxel Subdivision for Ray Tracing", 1989).
 constexpr GridOptions kNested{.cells = 0.25, .references = 12, .most = 12, .levels = 8};
 

@@ -4,13 +4,14 @@
 
 namespace orrery {
 
-// Traverses a tree with the rays of a batch: registers of coherent rays as packets, the others as single
-// rays.
+// Traverses a tree with the rays of a batch. Registers of coherent rays are traversed as packets, other rays
+// one by one.
 template <class T>
 class BatchTraversal {
  public:
-  // `t` holds the ends of the active rays and receives hit distances, or -1 for occluded rays. `primitive`
-  // receives the primitives that were hit, or is null. REQUIRES: all arguments outlive this object.
+  // `t` contains the t_max of each active ray and receives its hit distance, or -1 if the ray is occluded.
+  // `primitive` receives the primitive that each ray hits; null for occlusion queries. REQUIRES: all
+  // arguments outlive this object.
   BatchTraversal(const WideTree<T>& tree, const RayBatch<T>& rays, const LaneGroups& groups, Array<T>& t,
                  Array<IndexOf<T>>* primitive)
       : tree_(tree), rays_(rays), groups_(groups), t_(t), primitive_(primitive) {}
@@ -28,14 +29,15 @@ class BatchTraversal {
 
  private:
   using N = Lanes<T>;
-  // Maximum width of a packet, relative to the mean leaf. Wider packets test many boxes that most of their
-  // rays miss.
+  // Maximum width of a packet at the box of the tree, relative to the mean leaf extent. Wider packets test
+  // many boxes that most of their rays miss.
   static constexpr T kMaxPacketExtent = 1;
-  // Tests of a packet with blocks and primitives after which its rays continue one by one.
+  // Maximum number of block and primitive tests per packet. Beyond it, the rays of the packet continue one by
+  // one.
   static constexpr int kPacketBudget = 200;
-  // If the first packets take more than kDearTests tests each, some rays are traced alone and the costs
-  // compared. The rest of the batch uses the cheaper method. Costs are in ns on one machine; only their
-  // ratios matter.
+  // If the first kTrialPackets packets need more than kDearTests tests on average, at least kTrialSingles
+  // rays are traced one by one. The remaining rays of the batch use the method with the lower cost per ray.
+  // Costs are in ns, measured on one machine; only their ratios matter.
   static constexpr int kTrialPackets = 8, kTrialSingles = 2 * kWidth<T>, kDearTests = 48;
   static constexpr double kPacketCost = 100, kPacketVisitCost = 12, kPacketTestCost = 14;
   static constexpr double kSingleCost = 30, kSingleVisitCost = 9, kSingleTestCost = 3.5;
@@ -65,7 +67,7 @@ class BatchTraversal {
     trial_ = Trial::over;
   }
 
-  // Returns the number of tests.
+  // Traces all packets. Returns the number of block and primitive tests.
   template <Query kQuery>
   double run_packets(AcceleratorCounts& counts) {
     run_all<kQuery>(packets_, counts);
@@ -120,8 +122,8 @@ class BatchTraversal {
     packets_.add(packet, probe, {t, primitive, stdx::hmax(t), kPacketBudget}, group);
   }
 
-  // Adds the rays of a register that `chosen` selects. `x` and `y` select the rays whose largest axis is x or
-  // y.
+  // Adds the lanes of a register whose bits are set in `chosen`. Bits of `x` and `y` mark rays whose largest
+  // direction component is x or y.
   void add_singles(const Ray<N>& ray, const Shear<N>& shear, unsigned x, unsigned y, unsigned chosen,
                    int group) {
     const typename RayBoxTester<T>::Register probes(ray);
@@ -154,7 +156,8 @@ class BatchTraversal {
             {largest(active, shear.x), largest(active, shear.y)}};
   }
 
-  // Groups traversals by the signs of their directions, because these agree on which node is nearer.
+  // Runs all traversals, grouped by the signs of their directions, because such rays visit nodes in nearly
+  // the same order.
   template <Query kQuery, class Traversals>
   void run_all(Traversals& traversals, AcceleratorCounts& counts) const {
     if (traversals.count == 0) return;
@@ -180,7 +183,7 @@ class BatchTraversal {
   TraversalGroup<SingleRay<T>, RayBoxTester<T>, SingleHit<T>, kBatch> singles_;
   Trial trial_ = Trial::packets;
   bool packets_pay_ = true;
-  double packet_cost_ = 0;  // per ray
+  double packet_cost_ = 0;  // ns per ray
 };
 
 }  // namespace orrery

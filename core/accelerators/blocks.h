@@ -9,12 +9,12 @@
 
 namespace orrery {
 
-// Handle of a block of packed primitives of one kernel: pack (5 bits) and block in the pack (26 bits). The
-// highest bit is free for the structure's own use. A scene has one kernel per type of shape and one for
-// instances, so 5 bits suffice for 31 types of shape.
+// Name of a block of packed primitives: index of its pack (5 bits) and index in the pack (26 bits). A pack
+// contains the primitives of one kernel. The structure may use the highest bit. A scene has one kernel per
+// shape type and one for instances, so 5 bits suffice for 31 shape types.
 using BlockName = std::uint32_t;
 
-// Primitives in the order of a structure, packed in blocks of kBlock<T>.
+// Primitives of a structure in traversal order, packed into blocks of kBlock<T>.
 template <class T>
 class Blocks {
  public:
@@ -22,8 +22,8 @@ class Blocks {
   static std::size_t pack_number(BlockName name) { return name >> kBlockBits & (kMaxPacks - 1); }
   static std::uint32_t block_of(BlockName name) { return name & kBlockMask; }
 
-  // Adds a block of 1 to kSize primitives of one kernel, given by their indices in `primitives`. Throws
-  // InputError if a kernel has too many blocks.
+  // Adds a block of 1 to kSize primitives of one kernel. `places` are their indices in `primitives`. Returns
+  // the name of the block. Throws InputError if the kernel has more than 2^26 blocks.
   BlockName add(const PrimitiveList<T>& primitives, std::span<const std::uint32_t> places) {
     const auto* kernel = primitives[places.front()].kernel;
     references_ += places.size();
@@ -35,13 +35,13 @@ class Blocks {
     const auto block = static_cast<std::uint32_t>(indices.size() / kSize);
     if (block > kBlockMask)
       throw InputError("/render/accelerator",
-                       "structure has more than 67,108,864 blocks of primitives (limit 67,108,864, blocks)");
+                       "structure has more than 67,108,864 blocks of primitives (limit 67,108,864)");
     for (const std::uint32_t place : places) indices.push_back(primitives[place].index);
     indices.resize((block + 1) * kSize, kNothing);
     return static_cast<BlockName>(making - partial_packs_.begin()) << kBlockBits | block;
   }
-  // Adds as many blocks as these primitives need and appends their names to `names`. REQUIRES: `places`
-  // ascend, so that primitives of one kernel are adjacent.
+  // Adds the primitives at `places` in as few blocks as possible. Appends the block names to `names`.
+  // REQUIRES: `places` is in ascending order, so that primitives of one kernel are adjacent.
   void add_all(const PrimitiveList<T>& primitives, std::span<const std::uint32_t> places,
                std::vector<BlockName>& names) {
     while (!places.empty()) {
@@ -59,8 +59,8 @@ class Blocks {
     partial_packs_ = {};
   }
 
-  // Repacks the primitives as they are in `moved`, in the same order. Returns the boxes of all blocks by
-  // pack; the list is empty for a pack whose primitives have not moved.
+  // Repacks the primitives from `moved`, which has the order of the original list. Returns the new boxes,
+  // indexed by pack and block. The list of a pack is empty if its primitives have not moved.
   std::vector<std::vector<Bounds<T>>> follow(const PrimitiveList<T>& moved) {
     std::vector<std::vector<Bounds<T>>> boxes;
     for (Pack& pack : packs_) {
@@ -91,8 +91,8 @@ class Blocks {
  private:
   static constexpr int kBlockBits = 26;
   static constexpr std::uint32_t kBlockMask = (1u << kBlockBits) - 1, kMaxPacks = 1u << 5;
-  // Returns the bounds of a kernel's primitives by their indices; null for primitives that are not in the
-  // list.
+  // Returns the bounds of a kernel's primitives, indexed like the kernel. An entry is null if the primitive
+  // is not in the list.
   static std::vector<const Boundsd*> bounds_of(const ShapeKernel<T>& kernel,
                                                const PrimitiveList<T>& primitives) {
     std::vector<const Boundsd*> bounds;

@@ -6,10 +6,10 @@
 namespace orrery {
 namespace {
 
-// Bottom-up builder: merges near boxes until one is left. The distance of two boxes is the surface area of
-// the box around both; candidates are neighbours along a space-filling curve (Meister and Bittner, "Parallel
-// Locally-Ordered Clustering for Bounding Volume Hierarchy Construction", TVCG 2018). Few primitives of one
-// kernel become a leaf.
+// Bottom-up builder: merges the nearest boxes until one is left. The distance between two boxes is the
+// surface area of their union. Candidates are neighbours along a space-filling curve (Meister and Bittner,
+// "Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy Construction", TVCG 2018). A group of at
+// most kBlock<T> primitives of one kernel becomes a leaf.
 template <class T>
 class BottomUpBuilder {
  public:
@@ -67,8 +67,8 @@ class BottomUpBuilder {
            spread(all.lo.z, all.hi.z, at.z) << 2;
   }
 
-  // Merges groups that are each other's nearest neighbour. Such a pair always exists: ties go to the group
-  // closest along the curve, then to the one that makes the choice mutual.
+  // Merges pairs of groups that are each other's nearest neighbours. At least one such pair exists:
+  // nearest_of() breaks ties by the distance along the curve, then so that the choice is mutual.
   void merge_neighbours() {
     const int count = static_cast<int>(line_.size());
     std::vector<int> nearest(line_.size());
@@ -83,8 +83,8 @@ class BottomUpBuilder {
       if (!mutual) next.push_back(at(i));
       if (mutual && i < j) next.push_back(merge(at(i), at(j)));
     }
-    // If sizes or gaps grow steadily, only one pair is mutual. Adjacent groups are then merged, which keeps
-    // the number of passes logarithmic.
+    // If sizes or gaps grow steadily along the curve, only one pair is mutual. Adjacent groups are then
+    // merged, which keeps the number of passes logarithmic.
     constexpr std::size_t kFewest = 32;
     if (next.size() + next.size() / kFewest > line_.size()) next = pairs_of(next);
     line_ = std::move(next);
@@ -125,7 +125,7 @@ class BottomUpBuilder {
     return static_cast<std::uint32_t>(groups_.size() - 1);
   }
 
-  // Fills node `node` from the group.
+  // Converts a group to tree node `node` and its descendants.
   void fill(std::size_t node, std::uint32_t group, int depth) {
     interruption_point();
     const Group& g = groups_[group];
@@ -186,7 +186,7 @@ class BottomUpBuilder {
 
   std::vector<TreeItem<T>> items_;
   std::vector<Group> groups_;
-  std::vector<std::uint32_t> line_;  // unmerged groups, along the curve
+  std::vector<std::uint32_t> line_;  // groups that are not merged yet, in curve order
   BoxTree<T> tree_;
 };
 

@@ -9,17 +9,18 @@
 
 // Probes: precomputed data of a ray or packet for slab tests against all children of a wide node.
 //
-// Probes are conservative: they never reject a box in which a primitive's computed hit may lie. padded()
-// enlarges boxes for the rounding of their contents. Each probe moves the planes apart by kRounding times the
-// origin's largest coordinate and extends the far end by a few ulp. This covers the rounding of distances in
-// the slab test and in the hits (Ize, "Robust BVH Ray Traversal", JCGT 2013, extended to the hits' own
-// errors).
+// Probes are conservative: they never reject a box whose contents the ray hits according to the rounded
+// intersection tests. padded() enlarges boxes for the rounding of their contents. Each probe moves the planes
+// apart by kRounding times the origin's largest coordinate and extends the far end by a few ulp. This covers
+// the rounding of distances in the slab test (Ize, "Robust BVH Ray Traversal", JCGT 2013) and in the
+// intersection tests.
 namespace orrery {
 
 template <class T>
 inline constexpr T kFarther = 1 + 8 * std::numeric_limits<T>::epsilon();
 
-// Boxes of one node's children: planes[2 * axis] holds the low sides, planes[2 * axis + 1] the high sides.
+// Boxes of a node's children, one per lane: planes[2 * axis] are the low sides, planes[2 * axis + 1] the high
+// sides.
 template <class T>
 using BoxPlanes = std::array<Lanes<T>, 6>;
 
@@ -38,7 +39,7 @@ class RayBoxTester {
  public:
   using N = Lanes<T>;
 
-  // Data of all rays of a register, computed together.
+  // Precomputed data of all rays of a register.
   struct Register {
     using Array = std::array<T, static_cast<std::size_t>(kWidth<T>)>;
     struct Axis {
@@ -81,12 +82,13 @@ class RayBoxTester {
     set(2, ray.origin.z, ray.direction.z, pad, least);
   }
 
-  // Returns the signs of the direction, one bit per axis.
+  // Returns the octant of the direction: bit i is set if the component on axis i is negative.
   std::uint8_t octant() const {
     return static_cast<std::uint8_t>((near_[0] & 1) | (near_[1] & 1) << 1 | (near_[2] & 1) << 2);
   }
 
-  // Stores the entry distance of each box in `near`. Returns the bits of the boxes entered in [0, limit].
+  // Stores the entry distance of each box in `near`. Returns one bit per box, set if the ray enters the box
+  // before `limit`.
   [[gnu::always_inline]] unsigned enter(const BoxPlanes<T>& planes, T limit, N& near) const {
     near = N(T(0));
     N far = N(limit);
@@ -100,10 +102,10 @@ class RayBoxTester {
   }
 
   bool descending(std::size_t axis) const { return (near_[axis] & 1) != 0; }
-  // Return the earliest and the latest distance at which the ray may cross a plane of an axis.
+  // Return the smallest and the largest distance at which the ray may cross a plane perpendicular to an axis.
   T earliest(std::size_t axis, T plane) const { return plane * inverse_[axis] - near_offset_[axis]; }
   T latest(std::size_t axis, T plane) const { return plane * inverse_[axis] - far_offset_[axis]; }
-  // Clips [from, to] to the box. Returns false if nothing remains.
+  // Clips [from, to] to the box. Returns false if the interval becomes empty.
   bool clip(const Bounds<T>& box, T& from, T& to) const {
     for (std::size_t axis = 0; axis < 3; ++axis) clip(axis, box.lo[axis], box.hi[axis], from, to);
     return from <= to;
@@ -114,8 +116,8 @@ class RayBoxTester {
   }
 
  private:
-  // Replaces a direction component near 0 by one so small that the ray leaves no box sideways. This avoids
-  // infinities.
+  // Precomputes the data of one axis. A direction component near 0 is replaced by a tiny one, so that its
+  // reciprocal is finite. It is too small to move the ray out of a box.
   void set(std::size_t axis, T origin, T direction, T pad, T least) {
     if (std::abs(direction) < least) direction = std::copysign(least, direction);
     const T inverse = 1 / direction;
@@ -129,8 +131,8 @@ class RayBoxTester {
   std::array<T, 3> inverse_, near_offset_, far_offset_;
 };
 
-// Probe with the intervals of a packet's origins and directions. It enters every box that one of the rays
-// enters.
+// Probe with the intervals of a packet's origins and directions. Enters every box that at least one of the
+// rays enters.
 template <class T>
 class PacketBoxTester {
  public:
@@ -160,7 +162,7 @@ class PacketBoxTester {
   }
   // Returns whether the rays are coherent enough to be traversed together.
   bool narrow() const { return narrow_; }
-  // Returns the approximate distance between the rays where they reach the box.
+  // Returns the approximate width of the packet where it reaches the box, in metres.
   T width_at(const Bounds<T>& box) const {
     T distance = 0;
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -199,7 +201,7 @@ class PacketBoxTester {
     bool empty() const { return lo == hi; }
   };
 
-  // `size` is the largest component of all directions.
+  // `size` is the largest absolute direction component of all rays.
   void set(std::size_t axis, const Interval& origin, const Interval& direction, T pad, T size) {
     const T kLeast = T(1e-18) * size, kWidest = T(0.3) * size;
     const auto [lo, hi] = direction;
@@ -213,7 +215,7 @@ class PacketBoxTester {
   }
 
   std::array<Axis, 3> axis_;
-  T origins_ = 0, directions_ = 0;  // spread of origins; of directions relative to their size
+  T origins_ = 0, directions_ = 0;  // spread of origins in metres; of directions, relative to their size
   bool narrow_ = true, one_origin_ = false;
   Vec3<T> origin_;
 };

@@ -15,7 +15,7 @@ struct TreeItem {
   std::uint32_t kernel;     // items of different kernels never share a leaf
 };
 
-// Returns the bounded primitives of the list.
+// Returns the bounded primitives of the list, with padded boxes.
 template <class T>
 std::vector<TreeItem<T>> items_of(const PrimitiveList<T>& primitives) {
   std::vector<TreeItem<T>> items;
@@ -32,8 +32,8 @@ std::vector<TreeItem<T>> items_of(const PrimitiveList<T>& primitives) {
   return items;
 }
 
-// Level below which builders halve the items of a node. It bounds the depth for any input: 28 levels halve
-// 2^31 items to blocks, and at most 8 more divide a block by kernels.
+// Depth from which builders split the items of a node into halves. This bounds the depth for any input: 28
+// levels reduce 2^31 items to blocks, and at most 8 more divide a block by kernel.
 inline constexpr int kDepthGuard = 48;
 inline constexpr int kDeepestTree = kDepthGuard + 28 + 8;
 
@@ -42,7 +42,7 @@ template <class T>
 struct BoxTree {
   struct Node {
     Bounds<T> box;
-    std::uint32_t left = 0, right = 0;  // children; of a leaf: first item and end
+    std::uint32_t left = 0, right = 0;  // child nodes; in a leaf: first item and end
     bool leaf = false;
   };
   std::vector<Node> nodes;  // some may be unused

@@ -3,7 +3,8 @@
 namespace orrery {
 namespace {
 
-// One axis-aligned box per primitive, tested first by slabs. Unbounded primitives are tested by every ray.
+// List of primitives. A slab test with the axis-aligned box of a primitive precedes the test of the
+// primitive. Every ray tests all unbounded primitives.
 template <class T>
 class Boxes final : public Accelerator<T> {
  public:
@@ -71,7 +72,7 @@ class Boxes final : public Accelerator<T> {
 
 AcceleratorType boxes_type() {
   return {"boxes",
-          "List of primitives, each tested after its axis-aligned bounding box.",
+          "List of primitives. Rays test the axis-aligned box of each primitive first.",
           {.ray = 0, .visit = 0, .box = 0.25, .primitive = 2.6, .each = 0.25},
           build_accelerator<Boxes, float>,
           build_accelerator<Boxes, double>};

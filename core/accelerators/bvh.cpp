@@ -11,7 +11,7 @@ using Bvh = Hierarchy<T, SahBuilder<T>>;
 
 AcceleratorType bvh_type() {
   return {"bvh",
-          "Wide BVH by the surface area heuristic, traversed by ray packets and single rays.",
+          "Wide BVH built with the surface area heuristic, traversed by ray packets and single rays.",
           {.ray = 9, .visit = 8, .box = 0, .primitive = 0.75},
           build_accelerator<Bvh, float>,
           build_accelerator<Bvh, double>};

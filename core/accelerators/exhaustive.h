@@ -4,10 +4,10 @@
 
 namespace orrery {
 
-// Query for a ray: the closest hit, or whether there is any.
+// Kind of query for a ray: its closest hit, or whether any primitive occludes it.
 enum class Query { closest, occlude };
 
-// Tests every ray against every primitive of a list.
+// Tests of every ray against every primitive of a list.
 
 template <class T>
 void closest_exhaustive(const PrimitiveList<T>& primitives, const RayBatch<T>& rays, const LaneGroups& groups,
@@ -18,7 +18,7 @@ void closest_exhaustive(const PrimitiveList<T>& primitives, const RayBatch<T>& r
   counts.primitive_tests += primitives.size() * active_rays(rays, groups);
 }
 
-// Returns the registers with rays that hit no primitive.
+// Sets t_max of occluded rays to -1. Returns the registers that still contain active rays.
 template <class T>
 LaneGroups occlude_exhaustive(const PrimitiveList<T>& primitives, RayBatch<T>& rays, const LaneGroups& groups,
                               AcceleratorCounts& counts) {

@@ -10,11 +10,12 @@ namespace orrery {
 
 using CellIndex = std::array<int, 3>;
 
-// Box divided into equal cells. Planes are computed from their indices alone, so errors do not add up.
+// Box divided into equal cells. Planes are computed from their indices alone, so rounding errors do not
+// accumulate.
 template <class T>
 class GridLayout {
  public:
-  // Makes about `cells` cells, nearly cubic unless the box is too thin.
+  // Divides the box into about `cells` cells. The cells are nearly cubic unless the box is too thin.
   GridLayout(const Bounds<T>& box, double cells) : box_(box), count_(sides_for(box.hi - box.lo, cells)) {
     constexpr T kWider = 1 + 4 * std::numeric_limits<T>::epsilon();  // keeps the last plane outside the box
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -54,8 +55,8 @@ class GridLayout {
 
   // Calls visit(index, from, to) for the cells that the ray may touch in [from, to], from near to far, while
   // open(from) is true. Steps through layers along the main axis, rows in each layer and cells in each row
-  // (after Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing", 1987). Close to a plane,
-  // visits both sides of it.
+  // (after Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing", 1987). If the ray is close
+  // to a plane, visits the cells on both sides.
   template <class Open, class Visit>
   void for_each_along(const SingleRay<T>& ray, const RayBoxTester<T>& probe, T from, T to, const Open& open,
                       const Visit& visit) const {

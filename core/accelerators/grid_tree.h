@@ -11,14 +11,14 @@
 namespace orrery {
 
 struct GridOptions {
-  double cells;            // per primitive, approximate
-  std::size_t references;  // per primitive, maximum of the mean
-  std::size_t most;        // per cell; with more items a nested grid is tried
-  int levels;              // maximum nesting of grids
+  double cells;            // approximate number of cells per primitive
+  std::size_t references;  // maximum mean number of references per primitive
+  std::size_t most;        // items per cell above which a nested grid is tried
+  int levels;              // maximum nesting depth of grids
 };
 
-// Grid of nearly cubic cells. A primitive belongs to every cell that its box touches. A crowded cell may hold
-// a nested grid around its items.
+// Grid of nearly cubic cells. A primitive belongs to every cell that its box touches. A crowded cell may
+// contain a nested grid around its items.
 template <class T, const GridOptions& kOptions>
 class GridTree {
  public:
@@ -65,7 +65,7 @@ class GridTree {
   };
   static constexpr std::uint32_t kGrid = ~0u;
   struct Cell {
-    std::uint32_t first = 0, count = 0;  // range of block names; or index of a grid, and kGrid
+    std::uint32_t first = 0, count = 0;  // range in names_; for a nested grid its index and kGrid
   };
   // Cell that may become a grid.
   struct PendingCell {
@@ -74,7 +74,7 @@ class GridTree {
     int level;
     std::size_t cell;
   };
-  // Cells of one level. One list holds their items, cell after cell, to save allocations.
+  // Cells of one level. One list contains the items of all cells, cell by cell, to save allocations.
   struct LevelCell {
     Bounds<T> box;
     std::size_t items, cell;
@@ -84,7 +84,7 @@ class GridTree {
     std::vector<std::uint32_t> items;
   };
 
-  // Returns the box around the items' parts inside the cell.
+  // Returns the box around the parts of the items that are inside the cell.
   static Bounds<T> around(const PendingCell& cell, const std::vector<TreeItem<T>>& items) {
     Bounds<T> box;
     for (const std::uint32_t item : cell.items) {
@@ -99,8 +99,8 @@ class GridTree {
     return box;
   }
 
-  // Replaces the cell by a grid, with fewer cells if items would be shared by too many. Returns false if no
-  // grid helps.
+  // Replaces the cell with a grid. Reduces the number of cells while the grid would add too many references.
+  // Returns false if no grid of at least two cells is acceptable, or if the cell needs none.
   bool divide(const PendingCell& cell, const std::vector<TreeItem<T>>& items, std::size_t& left,
               Level& next) {
     const std::size_t count = cell.items.size();
@@ -135,7 +135,7 @@ class GridTree {
         layout.for_each_touching(items[item].box, [&](const CellIndex& i) { visit(layout.number(i), item); });
       }
     };
-    std::vector<std::size_t> places(layout.cells());  // items per cell, then next free place
+    std::vector<std::size_t> places(layout.cells());  // items per cell, then index of the next free entry
     for_each_item_in_cell([&](std::size_t i, std::uint32_t) { ++places[i]; });
     std::size_t end = next.items.size();
     layout.for_each_touching(layout.box(), [&](const CellIndex& i) {

@@ -4,16 +4,16 @@
 
 #include "core/model/accelerator.h"
 
-// Instances as primitives, at rest or moving. An Instance<T> has
+// Instances as primitives, static or moving. An Instance<T> has
 //   std::shared_ptr<const ModelGeometry<T>> model;
-//   int first, last;                numbers of its primitives in the scene: first..last-1
-//   T step_scale, step_base;        step off a surface in the world: model's step * scale + base
-//   static constexpr bool kTimed;   whether it moves with the rays' time
+//   int first, last;                its primitives have the numbers [first, last) in the scene
+//   T step_scale, step_base;        SurfaceBatch::step in the world: step in the model * scale + base
+//   static constexpr bool kTimed;   whether the pose depends on the rays' time
 //   Pose pose(rays, i) const;       transforms for register i: to_model(ray), and to the world
-//                                   point(p), vector(v), normal(n), which do not normalise
+//                                   point(p), vector(v), normal(n), without normalisation
 namespace orrery {
 
-// Rays transformed into one model, and their hits there.
+// Rays in the coordinates of one model, and their hits in it.
 template <class T>
 struct ModelVisit {
   using N = Lanes<T>;
@@ -29,8 +29,8 @@ struct ModelVisit {
   }
 };
 
-// Hits of register i in an instance's model. `nearer` marks the lanes that replace (best, best_id); `id` is
-// the primitive's number in the scene. `first` is the instance's first number.
+// Hits of register i in an instance's model. `nearer` marks the lanes whose hit replaces (best, best_id).
+// `id` is the primitive's number in the scene. `first` is the number of the instance's first primitive.
 template <class T>
 struct TakenHits {
   using N = Lanes<T>;
@@ -53,7 +53,7 @@ class InstanceKernelOf : public ShapeKernel<T> {
   using N = Lanes<T>;
   using List = std::vector<Instance>;
 
-  // `placed` is ordered by primitive numbers.
+  // REQUIRES: `placed` is sorted by primitive number.
   explicit InstanceKernelOf(List placed) : placed_(std::make_shared<const List>(std::move(placed))) {}
 
   bool timed() const override { return Instance::kTimed; }
@@ -125,7 +125,7 @@ class InstanceKernelOf : public ShapeKernel<T> {
   std::shared_ptr<const List> placed_;
 
  private:
-  // Transforms the rays of register i into the model.
+  // Stores the rays of register i in `visit`, in model coordinates. Returns the pose.
   static auto enter(const Instance& placed, const RayBatch<T>& rays, int i, const N& t,
                     ModelVisit<T>& visit) {
     const auto pose = placed.pose(rays, i);

@@ -6,11 +6,11 @@
 #include "core/model/accelerator.h"
 #include "core/model/scene.h"
 
-// Instances: models with their own structure, placed many times. Rays are transformed to model coordinates
-// without normalising their direction, so distances stay those of the world.
+// Instances: models with their own acceleration structure, placed any number of times. Rays are transformed
+// to model coordinates without normalising the direction, so hit distances are the same as in the world.
 namespace orrery {
 
-// Model in a render's precision. Its primitives are numbered from 0.
+// Model in the number type of a render. Its primitives are numbered from 0.
 template <class T>
 struct ModelGeometry {
   std::vector<ShapeKernelPtr<T>> shapes;
@@ -19,13 +19,13 @@ struct ModelGeometry {
   AcceleratorPtr<T> accelerator;
 };
 
-// Model placed in the world, at rest.
+// Static instance of a model.
 template <class T>
 struct PlacedInstance {
   std::shared_ptr<const ModelGeometry<T>> model;
-  int first, last;  // numbers of its primitives in the scene: first..last-1
+  int first, last;  // its primitives have the numbers [first, last) in the scene
   Affine<T> world_from_model, model_from_world;
-  T step_scale, step_base;  // step off a surface in the world: model's step * scale + base
+  T step_scale, step_base;  // SurfaceBatch::step in the world: step in the model * scale + base
 
   static constexpr bool kTimed = false;
   struct Pose {
@@ -50,10 +50,11 @@ using PlacedList = std::vector<PlacedInstance<T>>;
 // Returns the box around a transformed box. REQUIRES: `model` is bounded.
 Boundsd box_around(const Boundsd& model, const Affined& world_from_model);
 
-// Returns the world box of a placed model, padded for the rounding of rays transformed in float.
+// Returns the world box of a placed model, padded for the rounding of rays transformed in float. Infinite if
+// the model is unbounded.
 Boundsd bounds_of(const Boundsd& model, const Affined& world_from_model);
 
-// Instances of a scene as primitives. Hits carry the scene's numbers of the models' primitives.
+// Kernel of the static instances of a scene. Hits contain the number of the hit primitive in the scene.
 template <class T>
 class InstanceKernel final : public InstanceKernelOf<T, PlacedInstance<T>> {
  public:

@@ -3,8 +3,7 @@
 namespace orrery {
 namespace {
 
-// Splits a cell at the median of its items, across its longest side. A ray visits both sides of a plane that
-// it crosses.
+// Splits a cell across its longest side, at the median of its items' centres.
 template <class T>
 class MedianSplitter {
  public:
@@ -24,7 +23,7 @@ class MedianSplitter {
     }
     const auto middle = centers.begin() + static_cast<std::ptrdiff_t>(centers.size() / 2);
     std::nth_element(centers.begin(), middle, centers.end());
-    if (cut(cell, axis, *middle) * 4 > cell.items.size() * 3) return {};  // most items would be on both sides
+    if (cut(cell, axis, *middle) * 4 > cell.items.size() * 3) return {};  // too many would be on both sides
     return SpacePlane{axis, *middle};
   }
 
@@ -49,7 +48,7 @@ using KdMedian = SingleRayAccelerator<T, SpaceTree<T, MedianSplitter<T>>>;
 
 AcceleratorType kd_median_type() {
   return {"kd-median",
-          "k-d tree with splits at the median.",
+          "k-d tree split at the median.",
           {.ray = 31, .visit = 6.2, .box = 0, .primitive = 1.0},
           build_accelerator<KdMedian, float>,
           build_accelerator<KdMedian, double>};

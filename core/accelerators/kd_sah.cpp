@@ -6,8 +6,8 @@ namespace orrery {
 namespace {
 
 // Chooses the plane of least cost by the surface area heuristic (MacDonald and Booth, "Heuristics for ray
-// tracing using space subdivision", 1990), among 31 per axis (Hurley et al., "Fast Ray Tracing for Modern
-// General Purpose CPU", 2002).
+// tracing using space subdivision", 1990), among 31 candidates per axis (Hurley et al., "Fast Ray Tracing for
+// Modern General Purpose CPU", 2002).
 template <class T>
 class SurfaceSplitter {
  public:
@@ -26,7 +26,8 @@ class SurfaceSplitter {
 
  private:
   static constexpr std::size_t kBins = 32;
-  // Relative costs of a visit and of a block, and the cost factor of planes that cut off empty space.
+  // Relative costs of visiting a node and testing a block, and the cost factor of planes that cut off empty
+  // space.
   static constexpr double kVisitCost = 0.6, kBlockCost = 1, kEmptyShare = 0.8;
 
   static double cost_of(std::size_t items) {
@@ -69,7 +70,7 @@ using KdSah = SingleRayAccelerator<T, SpaceTree<T, SurfaceSplitter<T>>>;
 
 AcceleratorType kd_sah_type() {
   return {"kd-sah",
-          "k-d tree with splits by the surface area heuristic.",
+          "k-d tree split by the surface area heuristic.",
           {.ray = 46, .visit = 4.2, .box = 0, .primitive = 1.0},
           build_accelerator<KdSah, float>,
           build_accelerator<KdSah, double>};

@@ -27,7 +27,7 @@ class List final : public Accelerator<T> {
 
 AcceleratorType list_type() {
   return {"list",
-          "List of primitives, all tested by every ray: the reference.",
+          "List of primitives. Every ray tests all of them. Reference for the other structures.",
           {.ray = 2, .visit = 0, .box = 0, .primitive = 0.5, .each = 0.5},
           build_accelerator<List, float>,
           build_accelerator<List, double>};

@@ -7,12 +7,11 @@ namespace orrery {
 namespace {
 
 constexpr int kMaxPieces = 64;       // maximum pieces per motion segment
-constexpr double kPieceDegrees = 4;  // maximum turn per piece, within kMaxPieces
+constexpr double kPieceDegrees = 4;  // maximum rotation per piece, unless kMaxPieces is exceeded
 
-// Includes the path between two placements of a point that is scaled, rotated and translated. The point
-// rotates about a unit axis while its scaled position v moves linearly. Its second derivative is then at most
-// |turn|^2 |v| + 2 |turn| |v'|, for time from 0 to 1. The path deviates from its chord by at most an eighth
-// of that.
+// Extends the box by the path of a model point between two placements. The point rotates about a unit axis
+// while its scaled position v moves linearly. Its second derivative is then at most |turn|^2 |v| + 2 |turn|
+// |v'|, for time from 0 to 1. The path deviates from its chord by at most an eighth of that.
 void include_path(const Vec3d& axis, const Placement& from, const Placement& to, const Vec3d& point,
                   Boundsd& box) {
   const auto at = [&](const Placement& p) {
@@ -21,7 +20,7 @@ void include_path(const Vec3d& axis, const Placement& from, const Placement& to,
   const double turn = std::abs(to.degrees - from.degrees) * (std::numbers::pi / 180);
   const double reach = std::max(length(point * from.scale), length(point * to.scale));
   const double off = turn * (turn * reach + 2 * length(point * (to.scale - from.scale))) / 8;
-  const Vec3d pad(std::min(off, 2 * reach));  // the path stays within its reach
+  const Vec3d pad(std::min(off, 2 * reach));  // the rotating part stays within `reach`
   for (const Vec3d& end : {at(from), at(to)}) {
     box.include(end - pad);
     box.include(end + pad);

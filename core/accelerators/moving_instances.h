@@ -4,8 +4,8 @@
 #include "core/math/elementary.h"
 #include "core/math/motion_segments.h"
 
-// Instances that move while the shutter is open, or whose models do. Each ray is transformed into the model
-// at the ray's time.
+// Instances that move during the exposure, or whose models do. Each ray is transformed to model coordinates
+// at its own time.
 namespace orrery {
 
 // Model in motion. Between two moments its scale, translation and angle about its axis change linearly.
@@ -15,18 +15,18 @@ struct MovingInstance {
 
   // Placement at one moment, and the change until the next.
   struct Moment {
-    // Rotated axes of the model: along + across cos + beyond sin. The terms are the components parallel to
-    // the rotation axis, across it, and perpendicular to both.
+    // Axes of the model after a rotation by angle a from this moment: along + across cos a + beyond sin a.
+    // The terms are the components parallel to the rotation axis, across it, and perpendicular to both.
     std::array<Vec3<T>, 3> along, across, beyond;
     T turns;                                               // rotation until the next moment, in turns
     Vec3<T> scale, more_scale, translate, more_translate;  // placement, and its change until then
   };
 
   std::shared_ptr<const ModelGeometry<T>> model;
-  int first, last;  // numbers of its primitives in the scene: first..last-1
+  int first, last;  // its primitives have the numbers [first, last) in the scene
   MotionSegments<T> segments;
   std::vector<Moment> moments;  // all but the last
-  T step_scale, step_base;      // see Placed
+  T step_scale, step_base;      // see PlacedInstance
 
   MovingInstance(const Instance& instance, std::shared_ptr<const ModelGeometry<T>> of, int number,
                  const Exposure& exposure);

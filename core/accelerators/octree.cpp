@@ -22,7 +22,7 @@ class OctantSplitter {
  private:
   static constexpr int kDeepest = 3 * 24;
 
-  // Returns false for few items, at the maximum depth, or if items would reach into three or more octants on
+  // Returns false for few items, at the maximum depth, or if items would touch three or more octants on
   // average.
   bool pays(const SpaceCell<T>& cell) const {
     if (cell.items.size() <= Blocks<T>::kSize || cell.depth >= kDeepest) return false;

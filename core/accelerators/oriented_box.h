@@ -4,8 +4,8 @@
 
 namespace orrery {
 
-// Area of a surface and its integrals of x and x x^T, which determine its principal axes. Moments of parts
-// add up to those of the whole.
+// Area of a surface, and the integrals of x and x x^T over it. They determine its principal axes. Moments of
+// parts add up to those of the whole.
 struct SurfaceMoments {
   double area = 0;
   Vec3d first;
@@ -16,8 +16,8 @@ struct SurfaceMoments {
 };
 
 // Returns the principal axes of a surface: three orthogonal unit eigenvectors of its covariance. Weights by
-// area make them independent of the tessellation (Gottschalk, Lin, Manocha, "OBBTree", 1996). Surfaces
-// without area get the world axes.
+// area make them independent of the tessellation (Gottschalk, Lin, Manocha, "OBBTree", 1996). Returns the
+// world axes if the area is 0.
 std::array<Vec3d, 3> principal_axes(const SurfaceMoments& moments);
 
 // Oriented bounding box.
@@ -39,7 +39,7 @@ struct OrientedBox {
     return size.x * size.y * size.z;
   }
 
-  // Clips [from, to] to the box. Returns false if nothing remains.
+  // Clips [from, to] to the box. Returns false if the interval becomes empty.
   bool clip(const Ray<T>& ray, T& from, T& to) const {
     return RayBoxTester<T>({along(ray.origin - center), along(ray.direction)}).clip(box, from, to);
   }
@@ -58,7 +58,7 @@ std::vector<HullTriangle> hull_of(const Primitive<T>& primitive) {
   return hull.empty() ? sides_of(primitive.bounds) : hull;
 }
 
-// Returns whether the oriented box is small enough to be worth its test, which takes three times as long as
+// Returns whether the oriented box is small enough to justify its test, which takes three times as long as
 // that of an axis-aligned box.
 template <class T>
 bool oriented_pays(const OrientedBox<T>& oriented, const Bounds<T>& box) {

@@ -4,7 +4,7 @@
 namespace orrery {
 namespace {
 
-// One box per primitive, with an additional oriented box where it is much smaller.
+// One axis-aligned box per primitive, and an oriented box if that is much smaller.
 template <class T>
 class PerPrimitiveObb {
  public:
@@ -71,7 +71,7 @@ using OrientedBoxes = SingleRayAccelerator<T, PerPrimitiveObb<T>>;
 
 AcceleratorType oriented_boxes_type() {
   return {"oriented-boxes",
-          "List of primitives, each tested after its oriented bounding box.",
+          "List of primitives. Rays test the oriented box of each primitive first.",
           {.ray = 24, .visit = 0, .box = 2.8, .primitive = 0, .each = 2.8},
           build_accelerator<OrientedBoxes, float>,
           build_accelerator<OrientedBoxes, double>};

@@ -10,13 +10,13 @@
 
 namespace orrery {
 
-// Box as two registers, for its low and high sides on all axes; the fourth lane is undefined.
+// Box as two registers: its low and its high sides on x, y and z. The fourth lane is undefined.
 template <class T>
 struct BoxLanes {
   using Sides = stdx::simd<T, stdx::simd_abi::deduce_t<T, 4>>;
   Sides lo{std::numeric_limits<T>::infinity()}, hi{-std::numeric_limits<T>::infinity()};
 
-  // Loads each register at once. The second load includes the number that follows the box in TreeItem.
+  // Loads four numbers at a time. The second load includes the member that follows the box in TreeItem.
   static BoxLanes of(const TreeItem<T>& item) {
     static_assert(offsetof(TreeItem<T>, box) == 0 && sizeof item >= 7 * sizeof(T));
     const T* sides = reinterpret_cast<const T*>(&item);
@@ -32,7 +32,7 @@ struct BoxLanes {
 
 // Top-down builder with the surface area heuristic (Goldsmith and Salmon 1987), binned (Wald, "On fast
 // Construction of SAH-based Bounding Volume Hierarchies", 2007). The tree depends on the items only, not on
-// threads.
+// the number of threads.
 template <class T>
 class SahBuilder {
  public:
@@ -49,8 +49,8 @@ class SahBuilder {
 
  private:
   static constexpr std::size_t kBins = 16, kBinsOfFew = 8;
-  static constexpr std::uint32_t kFew = 16;         // items up to which fewer bins suffice
-  static constexpr std::uint32_t kParallel = 4096;  // minimum items for a separate task
+  static constexpr std::uint32_t kFew = 16;         // maximum items of a node for kBinsOfFew
+  static constexpr std::uint32_t kParallel = 4096;  // minimum items of a node for parallel children
   using Sides = typename BoxLanes<T>::Sides;
   struct Bin {
     BoxLanes<T> box;
@@ -61,8 +61,8 @@ class SahBuilder {
     T parts = std::numeric_limits<T>::infinity();  // sum of half area times cost over both sides
     std::size_t axis = 0, bin = 0;
   };
-  // Maps twice a box's centre to a place along each axis. Bin i holds the places in [i, i + 1); the first and
-  // the last bin also hold all places outside.
+  // Maps the centre of a box to a position along each axis, in units of bins. Bin i contains the positions in
+  // [i, i + 1). Positions outside all bins belong to the first or the last one.
   struct Scale {
     Sides from, factor;
     Sides places(const BoxLanes<T>& box) const { return (box.lo + box.hi - from) * factor; }
@@ -70,7 +70,8 @@ class SahBuilder {
 
   explicit SahBuilder(BoxTree<T>& tree) : tree_(tree) {}
 
-  // Fills node `at` with items [from, to). Its 2(to - from) - 2 descendants occupy the places after it.
+  // Builds node `at` from items [from, to). Its descendants use the next 2 (to - from) - 2 elements of
+  // tree_.nodes.
   void fill(std::uint32_t at, std::uint32_t from, std::uint32_t to, int depth) {
     auto& node = tree_.nodes[at];
     BoxLanes<T> box, centers;

@@ -14,7 +14,8 @@ struct TraversalState {
   SingleHit<T> hit;
   AcceleratorCounts& counts;
 
-  // Returns whether hits at `from` or beyond may still matter. Occluded rays have t = -1.
+  // Returns whether a hit at distance `from` may be nearer than the current one. False for occluded rays,
+  // whose t is -1.
   bool open(T from) const { return from <= hit.t * kFarther<T>; }
 
   template <Query kQuery>

@@ -10,7 +10,7 @@
 
 namespace orrery {
 
-// Cell that may be divided, and the items that reach into it.
+// Cell that may be divided, and the items that touch it.
 template <class T>
 struct SpaceCell {
   Bounds<T> box;
@@ -28,8 +28,8 @@ struct SpacePlane {
 // Subramanian, "Fast Ray Tracing Using K-D Trees", 1988). Splitter chooses the planes:
 //   Splitter(const std::vector<TreeItem<T>>& items)
 //   std::optional<SpacePlane> split(const SpaceCell<T>&) const;   nullopt: the cell becomes a leaf
-//   static constexpr std::size_t kReferences;                     maximum mean per primitive
-// Cells are divided level by level, so that they compete fairly for the last references.
+//   static constexpr std::size_t kReferences;                     maximum mean references per primitive
+// Cells are divided level by level, so that all parts of the scene share the limit on references evenly.
 template <class T, class Splitter>
 class SpaceTree {
  public:
@@ -65,8 +65,8 @@ class SpaceTree {
             .references = blocks_.references()};
   }
 
-  // Visits cells from near to far. If a ray crosses a plane so close to the end of an interval that rounding
-  // may decide, visits both sides.
+  // Visits cells from near to far. Visits both sides of a plane if rounding could decide which side the ray
+  // enters.
   template <Query kQuery>
   void traverse(TraversalState<T>& state) const {
     Stretch at{0, 0, state.hit.t};
@@ -105,13 +105,13 @@ class SpaceTree {
   static constexpr int kDeepest = 80;  // maximum number of planes above a cell
   struct Node {
     T plane;
-    std::uint32_t axis, first, count;  // first of two adjacent children; of a leaf: its block names
+    std::uint32_t axis, first, count;  // first of two adjacent children; in a leaf: its block names
   };
   struct Stretch {
     std::uint32_t node;
     T from, to;
   };
-  // Cells of one depth. One list holds their items, cell after cell, to save allocations.
+  // Cells of one depth. One list contains the items of all cells, cell by cell, to save allocations.
   struct LevelCell {
     Bounds<T> box;
     std::size_t items, node;
@@ -125,7 +125,8 @@ class SpaceTree {
     return state.probe.latest(node.axis, node.plane) * kFarther<T>;
   }
 
-  // Divides a cell. Returns false and changes nothing if that helps no ray or adds too many references.
+  // Divides a cell. Returns false and changes nothing if the plane is not inside the cell, the tree would
+  // become too deep, or the division would add too many references.
   bool divide(const SpaceCell<T>& cell, const SpacePlane& plane, const std::vector<TreeItem<T>>& items,
               std::size_t& left, Level& next) {
     const T at = static_cast<T>(plane.at);

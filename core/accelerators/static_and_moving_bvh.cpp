@@ -68,7 +68,7 @@ class StaticAndMovingBvh final : public Accelerator<T> {
   using N = Lanes<T>;
   using Node = typename BoxTree<T>::Node;
 
-  // Returns the registers with a ray that enters the node's box before its end.
+  // Returns the registers in which a ray enters the node's box before its end in `ends`.
   static LaneGroups entering(const Node& node, const LaneGroups& groups, const BoxRays<T>& boxes,
                              const Array<T>& ends, AcceleratorCounts& counts) {
     LaneGroups in;
@@ -81,7 +81,7 @@ class StaticAndMovingBvh final : public Accelerator<T> {
     return in;
   }
 
-  // Visits the nearer child first, judged by the first ray and the box centres.
+  // Finds the closest hits below node `at`. Visits the child that is nearer along the first ray first.
   void find(std::uint32_t at, const LaneGroups& groups, const BoxRays<T>& boxes, const RayBatch<T>& rays,
             HitBatch<T>& hits, AcceleratorCounts& counts) const {
     const Node& node = tree_.nodes[at];

@@ -44,16 +44,16 @@ struct TraversalGroup {
   }
 };
 
-// Traverses a tree with many rays together. Opens each node once for all rays that enter it: long SIMD loops,
-// few mispredicted branches (Tsakok, "Faster Incoherent Rays: Multi-BVH Ray Stream Tracing", HPG 2009). For
-// Query::closest, children are visited by distance, on which the rays mostly agree.
+// Ray stream traversal: opens each node once for all rays that enter it. This gives long SIMD loops and few
+// mispredicted branches (Tsakok, "Faster Incoherent Rays: Multi-BVH Ray Stream Tracing", HPG 2009). For
+// Query::closest, children are visited in the order of their smallest entry distance over the rays.
 template <Query kQuery, class T, class Traversals>
 class Stream {
  public:
   Stream(const WideTree<T>& tree, Traversals& traversals, AcceleratorCounts& counts)
       : tree_(tree), traversals_(traversals), counts_(counts), far_(tree.bytes() > kNear) {}
 
-  // Runs the traversals with these numbers. REQUIRES: `ids` has kPad more readable elements.
+  // Runs the traversals with the indices in `ids`. REQUIRES: kPad elements after the last one are readable.
   static constexpr int kPad = 16;
   void run(const std::int32_t* ids, int count) { visit(tree_.root(), ids, count, count, room_.data()); }
 
@@ -72,16 +72,17 @@ class Stream {
   };
   using Lists = std::array<List, kLists>;
 
-  // Up to this many traversals in a node continue one by one, because a list is no longer worth its cost.
+  // Maximum number of traversals in a node that continue one by one, because lists would cost more than they
+  // save.
   static constexpr int kFew = 2;
-  // Trees of more than kNear bytes miss the cache. Nodes and blocks are prefetched, and rays that continue
-  // alone take turns to hide the latency. This pays for up to kFewFar traversals in a node. For
-  // Query::closest it pays for up to kMaxDiverging if at most one in kDivergingShare of the parent's
-  // traversals enters the node.
+  // Trees of more than kNear bytes do not fit in the cache. Nodes and blocks are then prefetched, and
+  // traversals that continue alone are interleaved to hide the latency. This is faster for up to kFewFar
+  // traversals in a node. For Query::closest it is faster for up to kMaxDiverging, if at most one in
+  // kDivergingShare of the parent's traversals enters the node.
   static constexpr std::size_t kNear = std::size_t{16} << 20;
   static constexpr int kFewFar = 8, kMaxDiverging = 64, kDivergingShare = 4, kInterleaved = 16;
 
-  // Whole registers read and write the lists, so each has kPad more elements than it needs.
+  // Lists are read and written in whole registers, so each has kPad extra elements.
   static constexpr int room_for(int count) { return (kWidth<T> + 1) * (count + kPad); }
   static constexpr int kReserve = (kDeepestTree + 1) * room_for(1);
   static constexpr int kRoom = kReserve + 2 * room_for(kBatch);
@@ -92,7 +93,7 @@ class Stream {
            (kQuery == Query::closest && count <= kMaxDiverging && count * kDivergingShare <= of);
   }
 
-  // `of` is the number of traversals in the parent. `room` is the start of the free elements.
+  // `of` is the number of traversals in the parent node. `room` is the first free element of room_.
   void visit(Child at, const std::int32_t* ids, int count, int of, std::int32_t* room) {
     if (WideTree<T>::is_leaf(at)) {
       meet(at, ids, count);
@@ -120,7 +121,7 @@ class Stream {
     flush();
   }
 
-  // Child that a traversal enters, and its distance.
+  // Child that a traversal enters, and the entry distance.
   struct StackEntry {
     T near;
     Child child;
@@ -133,7 +134,8 @@ class Stream {
     std::array<StackEntry, (kDeepestTree + 1) * kLists> stack;
   };
 
-  // Takes each traversal through a subtree alone.
+  // Runs each traversal through a subtree separately. If the tree is larger than kNear, up to kInterleaved of
+  // them alternate.
   void walk(Child root, const std::int32_t* ids, int count) {
     const auto begin = [&](SingleTraversal& walker, std::int32_t id) {
       walker.id = id;
@@ -167,7 +169,7 @@ class Stream {
     }
   }
 
-  // Advances to the next node or block. Returns false if there is none.
+  // Processes the current node or block and advances to the next. Returns false if the traversal is complete.
   template <bool kFar>
   [[gnu::always_inline]] bool step(SingleTraversal& walker) {
     auto& hit = traversals_.hits[walker.id];
@@ -205,8 +207,8 @@ class Stream {
     }
   }
 
-  // Tests the traversals against the children of a node. Returns the number of children that get a list.
-  // Appends the lists to `room` and advances it.
+  // Tests the traversals against the children of a node. Makes one list per child that a traversal enters.
+  // Stores the list elements at `room` and advances it. Returns the number of lists.
   std::size_t enter(const typename WideTree<T>::Node& node, const std::int32_t* ids, int count,
                     std::int32_t*& room, Lists& lists) {
     Lanes<T> nearest(std::numeric_limits<T>::infinity());
@@ -241,7 +243,7 @@ class Stream {
     return found;
   }
 
-  // Copies the ids whose mask has the bit to `to`. Returns their number.
+  // Copies to `to` the ids whose mask contains `bit`. Returns the number of copied ids.
   static int collect(std::int32_t bit, const std::int32_t* ids, const std::int32_t* masks, int count,
                      std::int32_t* to) {
     std::int32_t* end = to;
@@ -254,7 +256,7 @@ class Stream {
     return static_cast<int>(end - to);
   }
 
-  // Queues tests of the traversals with a block.
+  // Queues tests of the traversals against a block.
   void meet(Child leaf, const std::int32_t* ids, int count) {
     if (met_ > 0 && Blocks<T>::pack_number(leaf) != Blocks<T>::pack_number(leaf_)) flush();
     leaf_ = leaf;
@@ -270,7 +272,7 @@ class Stream {
     met_ = 0;
   }
 
-  // Tests pairs with blocks of the pack that `leaf` belongs to.
+  // Runs the tests of `pairs`, whose blocks are in the same pack as `leaf`.
   void test(Child leaf, std::span<const RayBlockPair> pairs) {
     const auto& pack = tree_.blocks().pack_of(leaf);
     if constexpr (kQuery == Query::closest)

@@ -4,7 +4,7 @@
 
 namespace orrery {
 
-// Primitives without bounds (planes, infinite cylinders). No box holds them, so every ray tests them all.
+// Unbounded primitives (planes, infinite cylinders). They fit in no box, so every ray tests all of them.
 template <class T>
 class Unbounded {
  public:
@@ -18,7 +18,7 @@ class Unbounded {
     closest_exhaustive(primitives_, rays, groups, hits, counts);
   }
 
-  // Returns the registers with rays that hit no primitive.
+  // Sets t_max of occluded rays to -1. Returns the registers that still contain active rays.
   LaneGroups occlude(RayBatch<T>& rays, const LaneGroups& groups, AcceleratorCounts& counts) const {
     return occlude_exhaustive(primitives_, rays, groups, counts);
   }

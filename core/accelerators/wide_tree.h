@@ -69,9 +69,10 @@ class WideTree {
       if (primitive.bounds.bounded()) held += half_area(padded<T>(primitive.bounds));
     measure(held);
   }
-  // Returns the growth of the relative box area since the tree was built: the area of all boxes over that of
-  // the primitives' boxes. The expected number of box entries is proportional to it. The reference is not the
-  // root's box, because a tree built while all primitives were in one place must count as useless elsewhere.
+  // Returns the growth of the relative box area since the tree was built: the area of all boxes divided by
+  // that of the primitives' boxes. The expected number of boxes that a ray enters is proportional to it. The
+  // divisor is not the area of the root's box. A tree built while all primitives overlapped would otherwise
+  // seem good after they have moved apart.
   double surface_area_growth() const { return relative_surface_area_ / relative_surface_area_as_built_; }
 
   bool empty() const { return blocks_.empty(); }
@@ -88,7 +89,7 @@ class WideTree {
       prefetch_lines(nodes_[child]);
   }
   const Bounds<T>& box() const { return box_; }
-  // Returns the mean of the longest side of the leaf boxes.
+  // Returns the longest side of a leaf box, averaged over all leaves.
   T mean_leaf_extent() const { return mean_leaf_extent_; }
   static bool is_leaf(Child child) { return (child & kLeaf) != 0; }
 
@@ -115,7 +116,8 @@ class WideTree {
     return static_cast<Child>(me);
   }
 
-  // Children of a wide node, found by opening the largest nodes of the binary tree.
+  // Children of a wide node, found by repeatedly replacing the largest inner node of the binary tree with its
+  // children.
   struct Children {
     std::array<std::uint32_t, kPlaces> node;
     std::array<T, kPlaces> area;  // half area of an inner node; -1 for a leaf
@@ -174,7 +176,7 @@ class WideTree {
   Bounds<T> box_;
   T mean_leaf_extent_ = 0;
   double relative_surface_area_ = 1,
-         relative_surface_area_as_built_ = 1;  // half area of all boxes over that of the primitives' boxes
+         relative_surface_area_as_built_ = 1;  // half area of all boxes / half area of the primitives' boxes
   std::vector<Node> nodes_;
   Blocks<T> blocks_;
 };

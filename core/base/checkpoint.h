@@ -5,25 +5,25 @@
 
 namespace orrery {
 
-// Time slice on a thread that other work may be waiting for.
+// Time slice of a task on a thread for which other tasks may be waiting.
 class TimeSlice {
  public:
-  // Blocks until this work may run again. Returns at once if the slice has been short so far or no other work
-  // waits.
+  // Blocks until the task may continue. Returns at once if the time slice is not used up or no other task is
+  // waiting.
   virtual void yield() = 0;
 
  protected:
   ~TimeSlice() = default;
 };
 
-// Cancellation and scheduling check that long work calls every few milliseconds.
+// Cancellation and scheduling check. Long computations call may_continue() every few milliseconds.
 class Checkpoint {
  public:
   Checkpoint() = default;
   // `turn` may be null; otherwise it must outlive the checkpoint.
   Checkpoint(std::stop_token stop, TimeSlice* turn = nullptr) : stop_(std::move(stop)), turn_(turn) {}
 
-  // Yields to waiting work if the time slice is used up. Returns false if a stop was requested.
+  // Yields to waiting tasks if the time slice is used up. Returns false if a stop was requested.
   bool may_continue() const {
     if (turn_) turn_->yield();
     return !stop_.stop_requested();

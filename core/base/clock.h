@@ -18,7 +18,7 @@ inline double cpu_ms_by(clockid_t clock) {
   clock_gettime(clock, &used);
   return double(used.tv_sec) * 1e3 + double(used.tv_nsec) * 1e-6;
 }
-// CPU time of the calling thread and of all threads of the process, in milliseconds.
+// Return the CPU time of the calling thread and of the process, in milliseconds.
 inline double thread_cpu_ms() { return cpu_ms_by(CLOCK_THREAD_CPUTIME_ID); }
 inline double process_cpu_ms() { return cpu_ms_by(CLOCK_PROCESS_CPUTIME_ID); }
 

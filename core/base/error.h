@@ -14,7 +14,7 @@ namespace orrery {
 // One problem in the input.
 struct Problem {
   std::string pointer;  // JSON Pointer (RFC 6901) to the value; "" for the whole document
-  std::string detail;   // one sentence without the place: allowed and actual value
+  std::string detail;   // one sentence without the place: allowed range and actual value
 
   // Returns the detail, preceded by the pointer unless that is empty.
   std::string text() const { return pointer.empty() ? detail : pointer + ": " + detail; }
@@ -29,7 +29,7 @@ class Error : public std::runtime_error {
 // problem with its place and the number of further ones.
 class InputError : public Error {
  public:
-  // Maximum number of problems kept. It bounds the memory that a bad document can request.
+  // Maximum number of stored problems. It bounds the memory that an invalid document can use.
   static constexpr std::size_t kMaxProblems = 20;
   // Maximum characters of a pointer and of a detail; longer ones are shortened. Callers already shorten
   // names, values and lists far below this limit.
@@ -45,7 +45,7 @@ class InputError : public Error {
   std::vector<Problem> problems_;
 };
 
-// Text that is not JSON. Its only problem points to the innermost value that was being parsed.
+// Text that is not JSON. Its only problem has the pointer of the innermost value that was being parsed.
 class MalformedJson : public InputError {
  public:
   // `offset` counts bytes from 0. `line` and `column` count from 1, columns in characters.
@@ -66,7 +66,7 @@ class NotFound : public Error {
   using Error::Error;
 };
 
-// Server is at capacity. The same request may succeed after retry_after_s seconds.
+// The server is at capacity. The same request may succeed after retry_after_s seconds.
 class Busy : public Error {
  public:
   Busy(const std::string& message, double retry_after_s) : Error(message), retry_after_s_(retry_after_s) {}
@@ -76,7 +76,7 @@ class Busy : public Error {
   double retry_after_s_;
 };
 
-// Work was cancelled or its client disconnected. No response is expected.
+// The operation was cancelled, for example because its client disconnected. No response is expected.
 class Cancelled : public Error {
  public:
   Cancelled() : Error("cancelled") {}

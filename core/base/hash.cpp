@@ -38,7 +38,7 @@ std::string sha256_hex(std::string_view bytes) {
   Digest digest{};
   unsigned int size = 0;
   if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &size, EVP_sha256(), nullptr) != 1)
-    throw std::runtime_error("libcrypto cannot compute SHA-256");
+    throw std::runtime_error("cannot compute SHA-256: libcrypto reports an error");
   return digest_hex(digest, size);
 }
 
@@ -47,7 +47,7 @@ std::string hmac_sha256_hex(std::string_view key, std::string_view bytes) {
   unsigned int size = 0;
   const auto* text = reinterpret_cast<const unsigned char*>(bytes.data());
   if (!HMAC(EVP_sha256(), key.data(), static_cast<int>(key.size()), text, bytes.size(), digest.data(), &size))
-    throw std::runtime_error("libcrypto cannot compute HMAC-SHA-256");
+    throw std::runtime_error("cannot compute HMAC-SHA-256: libcrypto reports an error");
   return digest_hex(digest, size);
 }
 

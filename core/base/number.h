@@ -8,7 +8,7 @@
 
 namespace orrery {
 
-// Parses the whole text as a number. Returns nullopt if any character is left over or T cannot hold the
+// Parses the whole text as a number. Returns nullopt if the text is not a number or T cannot represent the
 // value.
 template <class T>
 std::optional<T> parse_number(std::string_view text) {

@@ -10,7 +10,7 @@
 #include <sanitizer/tsan_interface.h>
 
 #include <algorithm>
-#define ORRERY_UNSEEN __attribute__((no_sanitize_thread))  // hides a worker's code before Handover::acquire()
+#define ORRERY_UNSEEN __attribute__((no_sanitize_thread))  // hides worker code before TsanFence::acquire()
 #else
 #define ORRERY_UNSEEN
 #endif
@@ -18,8 +18,8 @@
 // Parallel loops on oneTBB.
 namespace orrery {
 
-// Reports a hand-over between the caller and the workers to ThreadSanitizer, which cannot see into oneTBB.
-// Does nothing in other builds, since oneTBB already orders both sides.
+// Reports the synchronization between caller and workers to ThreadSanitizer, which cannot see inside oneTBB.
+// Does nothing in other builds, because oneTBB already synchronizes them.
 class TsanFence {
  public:
 #ifdef __SANITIZE_THREAD__
@@ -31,8 +31,8 @@ class TsanFence {
 #endif
 };
 
-// Calls act(0), ..., act(count - 1) in any order, several at once, in chunks of at least half of `grain`
-// calls. Each chunk starts with an interruption point. Once a call throws, no more chunks start. One of the
+// Calls act(0), ..., act(count - 1) in any order and concurrently, in chunks of at least `grain` / 2 calls.
+// Each chunk starts with an interruption point. Once a call throws, no more chunks start. One of the
 // exceptions is rethrown here after the running chunks have ended.
 template <class Act>
 void parallel_for_each(std::size_t count, std::size_t grain, const Act& act) {
@@ -70,7 +70,7 @@ void both_in_parallel(const First& first, const Second& second) {
   from_workers.acquire();
 }
 
-// Sorts by operator<, which must not throw. Equal elements may change their order. Not interruptible.
+// Sorts by operator<, which must not throw. Neither stable nor interruptible.
 template <class Iterator>
 void sort_in_parallel(Iterator begin, Iterator end) {
 #ifdef __SANITIZE_THREAD__

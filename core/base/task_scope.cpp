@@ -23,7 +23,7 @@ struct alignas(__STDCPP_DEFAULT_NEW_ALIGNMENT__) Header {
 constexpr std::size_t kCacheLine = 64, kLargeBlock = 4096;
 constexpr std::size_t kOnCacheLine = 1;  // flag in Header::bytes, whose values are even
 
-// Returns the bytes between the allocator's pointer and the block.
+// Returns the distance from the allocator's pointer to the block, in bytes.
 std::size_t offset_of(std::size_t alignment) { return std::max(sizeof(Header), alignment); }
 
 Header& header_of(void* block) { return *(static_cast<Header*>(block) - 1); }
@@ -31,7 +31,7 @@ Header& header_of(void* block) { return *(static_cast<Header*>(block) - 1); }
 void* take_block(std::size_t size, std::size_t alignment) {
   const bool on_cache_line = size >= kLargeBlock && alignment < kCacheLine;
   if (on_cache_line) alignment = kCacheLine;
-  constexpr std::size_t kChunk = 16;  // allocator granularity, below its overhead per block
+  constexpr std::size_t kChunk = 16;  // malloc's granularity in bytes
   const std::size_t offset = offset_of(alignment), all = (size + offset + kChunk - 1) / kChunk * kChunk;
   if (all < size) throw std::bad_alloc();
   MemoryAccount* const account = current_task.memory;
@@ -150,7 +150,7 @@ void* operator new(std::size_t size) { return orrery::take_block(size, __STDCPP_
 void* operator new(std::size_t size, std::align_val_t alignment) {
   return orrery::take_block(size, static_cast<std::size_t>(alignment));
 }
-// Own nothrow versions, because the standard library's do not call the operators above.
+// Nothrow versions, because the standard library's versions may bypass the operators above.
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   try {
     return operator new(size);

@@ -14,33 +14,35 @@
 
 namespace orrery {
 
-// Memory account of one piece of work. operator new charges the account of the current TaskScope; operator
-// delete credits the account that was charged, on any thread. A block that outlives its account is no longer
-// counted. Thread-safe.
+// Memory account of one task. operator new charges the account of the current TaskScope. operator delete
+// credits the account that was charged, on any thread. A block that outlives its account no longer counts
+// toward a limit. Thread-safe.
 class MemoryAccount : public std::enable_shared_from_this<MemoryAccount> {
  public:
-  // Requests the right to hold `bytes` in all, more or fewer than before. Returns the new limit, at least
-  // `bytes`. Throws if the request is refused, but not if `already` states that the bytes are held.
+  // Callback that changes the limit of the account to at least `bytes`, which may be more or less than
+  // before. Returns the new limit. Throws if it refuses. Does not throw if `already` is true, because the
+  // bytes are then allocated already.
   using Resize = std::function<std::size_t(std::size_t bytes, bool already)>;
-  // Factory of the resize callback, called once per account: for this one and each one from open_another().
-  // The account closes with its last owner.
+  // Factory of resize callbacks. Called once per account, including accounts from open_another(). The account
+  // closes when its last shared_ptr is destroyed.
   using Source = std::function<Resize()>;
   static std::shared_ptr<MemoryAccount> open(Source source);
   std::shared_ptr<MemoryAccount> open_another() const { return open(source_); }  // uses the same source
   MemoryAccount(const MemoryAccount&) = delete;
 
-  std::size_t bytes() const { return held_ - kOpen; }  // includes the allocator's overhead per block
+  std::size_t bytes() const { return held_ - kOpen; }  // includes the header and the rounding of each block
 
   // Excludes `bytes` of the account from its limit, because another owner is charged for them.
   void settle(std::size_t bytes);
 
   // Calls work() with this account, `stop` and the current time slice as the thread's TaskScope. If work()
-  // throws std::bad_alloc because the account was refused memory, throws the reason of the refusal instead.
+  // throws std::bad_alloc because the account was refused memory, throws the exception of the refusal
+  // instead.
   template <class Act>
   auto run(const std::stop_token& stop, const Act& work);
 
   // Throws std::bad_alloc if a block of 32 MiB or more exceeds the limit. Smaller blocks always succeed, so
-  // that no unprepared code fails; require_granted() throws afterwards.
+  // that code without error handling does not fail; require_granted() throws afterwards.
   void add(std::size_t bytes);
   void remove(std::size_t bytes);
   void require_granted() {
@@ -65,11 +67,11 @@ class MemoryAccount : public std::enable_shared_from_this<MemoryAccount> {
   std::exception_ptr refusal_;
 };
 
-// Context of the work that a thread does. Each pointer may be null.
+// Context of the task that a thread runs. Each pointer may be null.
 struct TaskContext {
   MemoryAccount* memory = nullptr;        // account charged for allocations
-  const std::stop_token* stop = nullptr;  // cancels the work
-  TimeSlice* time_slice = nullptr;        // time slice of the work; called from any thread
+  const std::stop_token* stop = nullptr;  // cancels the task
+  TimeSlice* time_slice = nullptr;        // time slice of the task; called from any thread
 };
 
 // Sets the calling thread's context until the end of the scope. Parallel helpers that the caller waits for
@@ -117,9 +119,9 @@ auto MemoryAccount::run(const std::stop_token& stop, const Act& work) {
   }
 }
 
-// Yields to waiting work if the time slice is used up. Throws Cancelled if a stop was requested, and
-// std::bad_alloc if the work holds more memory than granted. Takes a few ns; loops over input of any size
-// call it at each step, never while holding a lock that others need.
+// Yields to waiting tasks if the time slice is used up. Throws Cancelled if a stop was requested, and
+// std::bad_alloc if the task exceeds its memory limit. Takes a few ns, so loops over input of any size call
+// it at each step. REQUIRES: the caller holds no lock that other tasks need.
 void interruption_point();
 // Calls interruption_point() at every 4,096th step, for loops with short steps.
 inline void interruption_point(std::size_t step) {

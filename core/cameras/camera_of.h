@@ -6,10 +6,10 @@
 
 namespace orrery {
 
-// Base of a Camera whose rays come from one template:
+// Base of cameras that implement one template:
 //   Ray<N> ray(const CameraView<N>& view, const N& sx, const N& sy) const;
-// It returns the ray through the image point sx to the right of and sy above the image centre. Both are in
-// units of CameraFrame::half_extent per half image height.
+// It returns the ray through the image point that is sx to the right of the image centre and sy above it. In
+// these units, half the image height is CameraFrame::half_extent.
 template <class N>
 struct CameraView {
   Vec3<N> eye, right, up, forward;
@@ -40,7 +40,7 @@ class CameraOf : public Camera {
     for (int i = 0; i < kBatch; i += kWidth<T>) {
       const N in_x = lanes(pixels.x, i), in_y = lanes(pixels.y, i);
       const N px = in_x + T(tile.x0), py = in_y + T(tile.y0);
-      // Exact for pixel centres: mirroring an image about its centre mirrors every bit.
+      // Exact for pixel centres, so mirrored pixels have coordinates of equal magnitude.
       const N sx = (T(2) * (px + lanes(samples.u, i)) - T(width)) * scale;
       const N sy = (T(height) - T(2) * (py + lanes(samples.v, i))) * scale;
       const Ray<N> ray = static_cast<const Derived*>(this)->ray(view, sx, sy);

@@ -20,7 +20,7 @@ class Orthographic final : public CameraOf<Orthographic> {
   }
 
  private:
-  double height_;  // metres, covered by the image height
+  double height_;  // height of the view, metres
 };
 
 std::unique_ptr<Camera> read(Params& p) {

@@ -34,7 +34,8 @@ std::unique_ptr<Camera> read(Params&) { return std::make_unique<Panorama>(); }
 
 CameraType panorama_type() {
   return {"panorama",
-          "Equirectangular panorama: 360 degrees wide and 180 degrees high, for images of 2 to 1.", read};
+          "Equirectangular panorama: 360 degrees wide and 180 degrees high, for images of aspect ratio 2:1.",
+          read};
 }
 
 }  // namespace orrery

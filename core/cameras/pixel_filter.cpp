@@ -31,7 +31,7 @@ double mitchell(double x) {
   return ((((-b - 6 * c) * x + (6 * b + 30 * c)) * x + (-12 * b - 48 * c)) * x + (8 * b + 24 * c)) / 6;
 }
 
-// Evaluates the filter at `share` of the distance from its centre to its edge.
+// Evaluates the filter at a distance from its centre. `share` is the distance divided by the half width.
 double height(Filter filter, double share) {
   switch (filter) {
     case Filter::box: return 1;

@@ -4,8 +4,8 @@
 
 namespace orrery {
 
-// Assigns times to camera rays: uniform shares of the exposure, stratified together with the lens points of
-// the same sample set (Cook, Porter, Carpenter, "Distributed Ray Tracing", SIGGRAPH 1984).
+// Sets the times of camera rays, as fractions of the exposure: uniform in [0, 1) and stratified together with
+// the lens points of the same sample set (Cook, Porter, Carpenter, "Distributed Ray Tracing", SIGGRAPH 1984).
 template <class T>
 void draw_times(const Draws& draws, SampleSet set, RayBatch<T>& rays) {
   const IndexLanes<T> lane([](int i) { return static_cast<IndexOf<T>>(i); });

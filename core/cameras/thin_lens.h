@@ -26,7 +26,8 @@ class LensShape {
     }
   }
 
-  // u selects the triangle between the centre and one side; its fraction gives the distance from the centre.
+  // In a polygon, u selects the triangle between the centre and one side, and the distance from the centre. v
+  // is the position along the side.
   [[gnu::always_inline]] Point at(const SamplePoint<N>& sample) const {
     using std::sqrt;
     if (blades_ == 0) {

@@ -12,7 +12,7 @@ void record(const FirstHits<T>& first, const LaneGroups& groups, Vec3Array<T>& v
 
 ChannelType footprint_channel() {
   return {"footprint",
-          "Width of a pixel on the surface, across the ray, in metres.",
+          "Width of a pixel at the hit point, perpendicular to the ray, in metres.",
           {"R"},
           ChannelMean::of_hits,
           0,

@@ -12,7 +12,7 @@ void record(const FirstHits<T>& first, const LaneGroups& groups, Vec3Array<T>& v
 
 ChannelType normal_channel() {
   return {"normal",
-          "Unit shading normal on the camera's side, in scene coordinates.",
+          "Unit shading normal that faces the camera, in scene coordinates.",
           {"X", "Y", "Z"},
           ChannelMean::of_hits,
           0,

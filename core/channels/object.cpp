@@ -15,7 +15,7 @@ void record(const FirstHits<T>& first, const LaneGroups& groups, Vec3Array<T>& v
 
 ChannelType object_channel() {
   return {"object",
-          "Number of the object, from 1 in the order of the scene; 0: none.",
+          "Object number, counted from 1 in scene order; 0 if the ray misses.",
           {"Id"},
           ChannelMean::first_sample,
           0,

@@ -7,8 +7,8 @@
 //   static Gradient<double> read(Params&);               in the .cpp, which registers the type
 //   Vec3<N> radiance(const Vec3<N>& direction) const;    for a unit direction from the scene
 //   Vec3<N> most() const;                                maximum radiance per channel
-// `read_formula<Gradient>` is its factory. Formulas are not light-sampled: they vary so little that BSDF
-// sampling finds them as well.
+// `read_formula<Gradient>` is its factory. Formulas are not light-sampled: their radiance varies so little
+// that BSDF sampling suffices.
 namespace orrery {
 
 template <template <class> class Record, class T>

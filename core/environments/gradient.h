@@ -4,7 +4,8 @@
 
 namespace orrery {
 
-// Sky whose radiance grows linearly with the direction's y, over ground of constant radiance. Up is +y.
+// Sky whose radiance changes linearly with the direction's y from horizon to zenith, over ground of constant
+// radiance. Up is +y.
 template <class N>
 struct Gradient {
   Vec3<N> zenith, horizon, ground;

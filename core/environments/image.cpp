@@ -138,10 +138,10 @@ std::shared_ptr<const Environment> read_image(Params& p, const AssetSource& sour
         read_picture_of(p, "asset", name, [&](const std::string& n) { return source.picture_asset(n); });
   }
   const double degrees =
-      p.number("rotation_degrees", "Rotation about +y in degrees, anticlockwise from above.",
+      p.number("rotation_degrees", "Rotation about +y in degrees, anticlockwise as seen from above.",
                {.min = -1e6, .max = 1e6}, 0.0);
-  const double scale =
-      p.number("scale", "Factor on the radiance of the image.", {.min = 0, .max = kMaxColor}, 1.0);
+  const double scale = p.number("scale", "Factor by which the radiance of the image is multiplied.",
+                                {.min = 0, .max = kMaxColor}, 1.0);
   if (!picture) return nullptr;
   return std::make_shared<ImageEnvironment>(
       TurnedMap{LightMap(*picture), sine_cosine_degrees(degrees), scale});

@@ -6,8 +6,9 @@
 
 namespace orrery {
 
-// Discrete 2D distribution over grid cells: samples a row, then a column in it. Probabilities are multiples
-// of 2^-24, the resolution of the random numbers, so they match the sampling exactly.
+// Discrete 2D distribution over grid cells: samples a row, then a column in it. Probabilities of a row and of
+// a column in it are multiples of 2^-24, the resolution of the random numbers. They therefore match the
+// sampling exactly.
 class ImportanceTable {
  public:
   // `weights` are row-major and >= 0. The table is empty if all are 0.

@@ -15,7 +15,7 @@ double luminance(const float* rgb) {  // ITU-R BT.709
 double sine_of(int row, int height) { return sine_cosine_turns((row + 0.5) / (2 * height)).sine; }
 
 std::vector<float> weights_of(const Texels& picture, LightMap::Weights weights) {
-  constexpr double kLeast = 1e-6;  // share of all light; with less above the mean, light counts as uniform
+  constexpr double kLeast = 1e-6;  // minimum share of the light above the mean; below it, light is uniform
   const auto width = static_cast<std::size_t>(picture.width);
   double light = 0, sines = 0;
   const auto for_each_row = [&](const auto& visit) {

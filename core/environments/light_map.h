@@ -12,11 +12,11 @@
 
 namespace orrery {
 
-// Equirectangular radiance map: its centre lies toward -z, its top toward +y, its right half toward +x.
+// Equirectangular radiance map. Its centre is toward -z, its top toward +y, its right half toward +x.
 // Radiance is interpolated bilinearly between texel centres.
 //
-// The sampling density is bilinear between the same centres: draw() samples a texel by its weight, then a
-// point of its tent filter. Weights are luminance times the sine of the angle from +y.
+// The sampling density is interpolated bilinearly between the same centres: draw() samples a texel by its
+// weight, then a point of its tent filter. Weights are luminance times the sine of the angle from +y.
 class LightMap {
  public:
   // Texel weights. `compensated` subtracts the mean luminance over all directions and clamps at 0, because
@@ -25,7 +25,7 @@ class LightMap {
   enum class Weights { plain, compensated };
   explicit LightMap(const Texels& picture, Weights weights = Weights::compensated);
 
-  // Returns whether any texel has weight. False for uniform light.
+  // Returns whether any texel has a positive weight. False for uniform light.
   bool sampled() const { return !table_.empty(); }
 
   // Map coordinates of a direction, in texels from the left and from the top.
@@ -118,7 +118,7 @@ LightMap::Place<T> LightMap::draw(T u, T v, T along, T down) const {
   const T width = T(table_.width()), height = T(table_.height());
   T x = T(cell.column) + T(0.5) + tent(along), y = T(cell.row) + T(0.5) + tent(down);
   x = x < 0 ? x + width : x >= width ? x - width : x;
-  y = y < 0 ? -y : y > height ? 2 * height - y : y;  // the rows at the poles extend past them
+  y = y < 0 ? -y : y > height ? 2 * height - y : y;  // tents at the poles extend beyond the map
   return {x, y};
 }
 

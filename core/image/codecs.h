@@ -4,8 +4,8 @@
 #include "core/base/task_scope.h"
 #include "core/image/files.h"
 
-// Shared helpers of the image codecs. Decoders check the header's size before they decode, and throw
-// InputError.
+// Shared helpers of the image codecs. Decoders check the size in the header before they decode the pixels.
+// They throw InputError.
 namespace orrery {
 
 Image decode_png(std::span<const std::byte> bytes, std::size_t max_pixels);
@@ -19,8 +19,9 @@ inline InputError damaged(const char* format, const char* why) {
 inline void check_size(std::size_t width, std::size_t height, std::size_t max_pixels) {
   constexpr std::size_t kMaxSide = 65535;
   if (width == 0 || height == 0 || width > kMaxSide || height > kMaxSide || width * height > max_pixels)
-    throw InputError("", "image must have 1 to " + std::to_string(max_pixels) + " pixels (got " +
-                             std::to_string(width) + " x " + std::to_string(height) + ")");
+    throw InputError("", "image must have 1 to " + std::to_string(kMaxSide) + " pixels per side, at most " +
+                             std::to_string(max_pixels) + " in total (got " + std::to_string(width) + " x " +
+                             std::to_string(height) + ")");
 }
 
 }  // namespace orrery

@@ -81,7 +81,7 @@ std::string encode_exr(const Image& image, std::span<const ExrLayer> layers) {
                    Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(const_cast<float*>(layer.values.data())),
                               sizeof(float), sizeof(float) * std::size_t(image.width())));
     file.setFrameBuffer(frame);
-    constexpr int kRows = 64;  // a multiple of the 16 that are compressed together
+    constexpr int kRows = 64;  // a multiple of the 16 rows of a ZIP block
     for (int row = 0; row < image.height(); row += kRows) {
       interruption_point();
       file.writePixels(std::min(kRows, image.height() - row));

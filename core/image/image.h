@@ -54,7 +54,7 @@ class Image {
   std::unique_ptr<std::byte[], Free> data_;
 };
 
-// Converts a linear32 image to srgb8. REQUIRES: linear32.
+// Converts an image to srgb8. REQUIRES: `linear` is linear32.
 Image srgb_of(const Image& linear);
 
 }  // namespace orrery

@@ -13,7 +13,7 @@ namespace srgb {
 inline constexpr double kEndOfLine = 0.0031308;
 
 // Polynomial in x^(1/4) for 1.055 x^(1/2.4) - 0.055, x from kEndOfLine to 1. Interpolates at Chebyshev
-// points; the error is below 0.0006 of a code.
+// points; the error is below 0.0006 / 255.
 inline constexpr std::array kCurve = {-0.059739011f, 0.14195826f,  1.3545726f,  -0.82528002f,
                                       0.62100228f,   -0.29424764f, 0.061734308f};
 

@@ -9,10 +9,10 @@ template <class N>
 struct Arrival {
   Vec3<N> direction;  // unit, toward the light
   N distance;         // metres to the light; infinite if directional, -1 if no light arrives
-  Vec3<N> incident;   // per channel
+  Vec3<N> incident;   // per channel; see LightBatch::incident
 };
 
-// Light that arrives from a sampled point of a light: see LightBatch.
+// Light that arrives from a sampled point of a light.
 template <class N>
 struct LightSample {
   Arrival<N> arrival;

@@ -13,7 +13,7 @@ Directional<double> Directional<N>::read(Params& p) {
       "intensity", "Intensity; a white surface that faces a light of intensity 1 has radiance 1.", Vec3d(1));
   const double angle =
       p.number("angle_degrees",
-               "Angular diameter of the disc, for path and distributed; the sun: 0.53; 0: parallel light.",
+               "Angular diameter of the disc in degrees, for path and distributed; sun: 0.53; parallel: 0.",
                {.min = 0, .max = 180}, 0.0);
   const double sine = sine_cosine_degrees(angle / 4).sine;
   return {from, intensity, 2 * sine * sine};

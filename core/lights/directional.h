@@ -9,8 +9,8 @@
 
 namespace orrery {
 
-// Infinitely distant light, parallel or from a disc in the sky. A white Lambert surface facing the disc reads
-// `intensity`.
+// Infinitely distant light, parallel or from a disc in the sky. A white Lambert surface facing the disc has
+// radiance `intensity`.
 template <class N>
 struct Directional {
   Vec3<N> from, intensity;

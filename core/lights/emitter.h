@@ -10,7 +10,7 @@ namespace orrery {
 
 // Spherical rectangle: solid angle of a rectangle and uniform samples of it (Ureña, Fajardo, King, "An
 // Area-Preserving Parametrization for Spherical Rectangles", EGSR 2013). The solid angle is a sum of arc
-// sines, because the paper's arc cosines suffer cancellation against a constant.
+// sines, because the paper's arc cosines suffer from cancellation when a constant is subtracted.
 template <class N>
 class SphericalRectangle {
   using T = ScalarOf<N>;
@@ -75,7 +75,7 @@ class SphericalRectangle {
 template <class N>
 struct Emitter {
   Vec3<N> at, a, b;  // see Patch; a and b are unit vectors for a rectangle or solid
-  Vec3<N> normal;    // unit; of a solid the direction of Patch::c
+  Vec3<N> normal;    // unit; for a solid, the direction of Patch::c
   Vec3<N> radiance;
   N length_a, length_b, length_c;  // lengths of the vectors in Patch
   N kind, area, magnitude;
@@ -177,7 +177,7 @@ struct Emitter {
     const Vec3<N> toward = at - from;
     const N distance2 = dot(toward, toward), zero(T(0)), one(T(1));
     const N sine2 = length_a * length_a / distance2;
-    // Up to rounding, a point on the sphere sees it from inside or not at all.
+    // Points on the sphere, up to rounding, count as inside.
     const N rounding = T(128) * std::numeric_limits<T>::epsilon() * magnitude * length_a;
     const auto outside = distance2 - length_a * length_a > rounding;
     const N height = sine2 / (one + sqrt(max_first(zero, N(one - sine2))));
@@ -191,7 +191,7 @@ struct Emitter {
     const auto [height, by_angle] = cone(from);
     const auto outside = height > zero;
     const auto [sine_v, cosine_v] = sine_cosine_turns(v);
-    // Samples a direction from the centre: any if `from` is inside, else one of the visible cap.
+    // Samples a direction from the centre: uniformly if `from` is inside, otherwise in the visible cap.
     const Vec3<N> toward = at - from;
     const N distance2 = dot(toward, toward), distance = sqrt(distance2);
     const N h = u * height, sine2 = h * (T(2) - h), cosine = one - h;

@@ -65,7 +65,7 @@ class EmitterKernel final : public LightKernel<T> {
     return any(mine) ? select(mine, SolidEmitter<N>(emitter, ray.origin).pdf(ray, t), other) : other;
   }
 
-  // Fills one register of `out`. The shadow ray stops short of the emitter by the possible rounding error of
+  // Fills one register of `out`. The shadow ray ends before the emitter, by a bound on the rounding errors of
   // the emitter and of the ray's origin. A point of the emitter therefore does not light itself.
   static void put(const Emitter<N>& emitter, const SurfaceBatch<T>& surface, const PathDraws<T>& draws, int i,
                   const MaskOf<N>& mine, const N& probability, LightBatch<T>& out) {
@@ -163,7 +163,8 @@ std::optional<Emitter<double>> make_emitter(const Patch& patch, const Vec3d& rad
       break;
   }
   Emitter<double> emitter = make_emitter(placed, radiance);
-  // Hits move by rounding in the model and on the way to the world: see Placed.
+  // Rounding moves hits both in the model and in the transformation to the world: see
+  // PlacedInstance::step_base.
   const double in_model = make_emitter(patch, radiance).magnitude;
   const double moved = stretch(world_from_model) * in_model + max_component(abs(world_from_model.origin));
   emitter.magnitude = std::max(emitter.magnitude, 2 * moved);

@@ -11,16 +11,17 @@ namespace orrery {
 
 Emitter<double> make_emitter(const Patch& patch, const Vec3d& radiance);
 
-// Transforms a model's patch to the world. Returns nullopt if the result is no patch, such as an ellipsoid
+// Transforms a model's patch to the world. Returns nullopt if the result is not a patch, such as an ellipsoid
 // from a sphere or a rectangle without right angles.
 std::optional<Emitter<double>> make_emitter(const Patch& patch, const Vec3d& radiance,
                                             const Affined& world_from_model);
 
-// Makes a kernel of the emitters, in this order.
+// Makes a kernel whose lights are the emitters, in this order.
 template <class T>
 LightKernelPtr<T> make_emitters(std::span<const Emitter<double>> emitters);
 
-// Returns bounds of an emitter. Near points treat it as a hemisphere of its radiance, far points as its area.
+// Returns bounds of an emitter. The strength is twice its radiance. Far away, the estimate follows the
+// inverse-square law of its area.
 LightBounds bounds_of(const Emitter<double>& emitter);
 
 }  // namespace orrery

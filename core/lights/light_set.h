@@ -6,7 +6,7 @@
 #include "core/model/light.h"
 #include "core/model/record.h"
 
-// Light types that one point or direction represents.
+// Light types that are represented by one point or direction.
 // Each type is one record, `template <class N> struct Point`, with
 //   static constexpr LightTraits kTraits;
 //   static Point<double> read(Params&);                in the .cpp, which registers the type

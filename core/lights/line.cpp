@@ -10,7 +10,7 @@ Line<double> Line<N>::read(Params& p) {
   const Vec3d from = p.point("from", "One end of the line, in metres.");
   const Vec3d to = p.point("to", "The other end, in metres.");
   const Vec3d intensity =
-      p.color("intensity_per_metre", "Radiant intensity per metre in every direction, in W/sr.", Vec3d(1));
+      p.color("intensity_per_metre", "Radiant intensity per metre of the line, in W/(sr m).", Vec3d(1));
   const Vec3d along = safe_normalize(to - from);
   if (along == Vec3d()) p.fail("to", "must differ from \"from\"");
   return {from, along, length(to - from), intensity};

@@ -46,7 +46,7 @@ struct Line {
   }
 
   MaskOf<N> extended() const { return extent > N(T(0)); }
-  // Samples the line uniformly by the angle it subtends, which cancels the squared distance. h is the
+  // Samples the line uniformly in the angle that it subtends, which cancels the squared distance. h is the
   // distance from the line. s and t are positions along the line, from the nearest point to its start and to
   // the sample. After an angle d from the start, t = h (s cos d + h sin d) / (h cos d - s sin d).
   LightSample<N> draw(const Vec3<N>& position, const N& u, const N&) const {

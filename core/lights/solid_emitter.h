@@ -68,8 +68,8 @@ class VisibleCylinderWall {
 };
 
 // Emitting box or cylinder, sampled from an outside point: selects one of its visible faces, or the wall, by
-// approximate solid angle. The density is 0 from inside: the solid fills the view, and rounding may move
-// points of its inner surface outside. Lanes of other emitters are undefined.
+// approximate solid angle. The density is 0 for points inside: the solid fills their view, and rounding may
+// move points of its inner surface outside. Lanes with emitters of other kinds are undefined.
 template <class N>
 class SolidEmitter {
   using T = ScalarOf<N>;

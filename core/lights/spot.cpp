@@ -25,12 +25,13 @@ Spot<double> Spot<N>::read(Params& p) {
   return {position, direction, intensity, attenuation, cos_inner, cos_outer, cos_inner - cos_outer};
 }
 
-// Cosines of directions are off by about an epsilon; the smooth step multiplies this by 1.5 over its width.
+// Cosines of directions have an error of about one epsilon. The smooth step amplifies it by at most 1.5 /
+// width.
 template <class N>
 RoundingLimit Spot<N>::rounding() const {
   constexpr double kMaxError = 2e-4;
   const double width = cos_range > 0 ? cos_range : 1 - cos_outer;
-  return {kMaxError * width, "the edge of its beam spans a difference of cosines of " + number_text(width)};
+  return {kMaxError * width, "the edge of the beam spans only " + number_text(width) + " in cosine"};
 }
 
 LightType spot_type() { return {"spot", "A point light that shines into a cone.", make_light_set<Spot>}; }

@@ -6,7 +6,8 @@
 
 namespace orrery {
 
-// Spot light: full inside the inner cone, 0 outside the outer cone, a smooth step in the cosine between.
+// Spot light: full intensity inside the inner cone, 0 outside the outer cone. Between them, a smooth step in
+// the cosine.
 template <class N>
 struct Spot {
   Vec3<N> position, direction, intensity;

@@ -52,13 +52,14 @@ struct Extents {
   }
 };
 
-// Returns a bound on the coordinates of a model's point, including its rotation between two keys.
+// Returns an upper bound of the absolute world coordinates of a model's point, including its rotation between
+// keys.
 double reach_of(const Instance& instance, const Affined& world_from_model, const Vec3d& point) {
   if (instance.motion.times.size() == 1) return max_component(abs(world_from_model.point(point)));
   return max_component(abs(world_from_model.origin)) + length(world_from_model.vector(point));
 }
 
-// Adds instances in world coordinates and, because rays are traced there, in model coordinates.
+// Adds instances, in world coordinates and in the model coordinates in which rays are traced.
 void add_instances(const Scene& scene, SceneFacts& facts) {
   std::vector<Extents> of_models;
   for (const Model& model : scene.models) {

@@ -39,8 +39,8 @@ void read_camera(Params& p, Scene& scene) {
       p.number("aperture_radius", "Radius of the lens in metres, for path and distributed; 0: pinhole.",
                {.min = 0, .max = kMaxLength}, 0.0);
   const double focus =
-      p.positive("focus_distance",
-                 "Distance of the focal plane along the view, in metres; default: to look_at.", derived(1.0));
+      p.positive("focus_distance", "Distance to the focal plane, in metres; default: distance to look_at.",
+                 derived(1.0));
   if (p.has("focus_distance")) placement.focus_distance = focus;
   placement.blades = {
       static_cast<int>(
@@ -62,8 +62,8 @@ void read_camera(Params& p, Scene& scene) {
     p.fail("up", "must not be parallel to the view direction");
 }
 
-// Asset source that loads each mesh once, however often the scene names it. Images are not cached, because a
-// scene names only one.
+// Asset source that loads each mesh once, even if the scene names it several times. Images are not cached,
+// because a scene names only one.
 class CachedMeshSource final : public AssetSource {
  public:
   explicit CachedMeshSource(const AssetSource& from) : from_(from) {}
@@ -143,9 +143,8 @@ Placement read_key(Params& p, const Placement& rest) {
                 p.point("translate", "Position of the model's origin, in metres.", derived(rest.translate))};
   for (const double Vec3d::*axis : {&Vec3d::x, &Vec3d::y, &Vec3d::z})
     if (key.scale.*axis * rest.scale.*axis < 0)
-      p.fail("scale", "each factor must have the same sign as in the instance's own scale (got " +
-                          number_text(key.scale.*axis) + "; own scale " + number_text(rest.scale.*axis) +
-                          ")");
+      p.fail("scale", "each factor must have the sign of the factor in the instance's scale, " +
+                          number_text(rest.scale.*axis) + " (got " + number_text(key.scale.*axis) + ")");
   return key;
 }
 
@@ -182,7 +181,7 @@ class SceneReader {
                       [&](Params& i) { read_scene_options(i, Section::image, scene_->render); });
     scene_->ambient = p.color("ambient", "Ambient light.", Vec3d(0));
     scene_->background = p.color("background", "Radiance of rays that leave the scene.", Vec3d(0));
-    p.object_if_given("environment", "Surroundings of the scene, instead of a background.",
+    p.object_if_given("environment", "Environment light, instead of a background.",
                       [&](Params& e) { read_environment(e); });
     if (p.has("background") && p.has("environment"))
       p.fail("background", "cannot be used with an environment");
@@ -193,7 +192,7 @@ class SceneReader {
       objects_.read(o, names_, meshes_);
       ++scene_->object_count;
     });
-    p.each_named("models", "Objects that instances place, by name.", {},
+    p.each_named("models", "Models by name: objects that instances place in the scene.", {},
                  [&](const std::string& name, Params& m) { read_model(name, m); });
     std::size_t instanced = 0;
     p.each("instances", "Instances of models.", {0, kMaxObjects}, [&](Params& i) {
@@ -296,8 +295,8 @@ class SceneReader {
     }
   }
 
-  // Records which primitives belong to which object. A run lasts until the next one, so empty runs are
-  // skipped.
+  // Records which primitives belong to which object. A run ends where the next one starts, so objects without
+  // primitives have none.
   void number_objects() {
     std::int32_t primitive = 0, resting = 0;
     const auto add = [&](std::size_t primitives, std::int32_t object) {
@@ -312,7 +311,7 @@ class SceneReader {
       add(scene_->models[instance.model].material_of.size(), resting++);
   }
 
-  // Sets the time span of everything that moves in the scene.
+  // Sets scene_->motion to the time span of all animation keys.
   void gather_motion() {
     std::vector<double> times;
     const auto add = [&times](const std::vector<double>& some) {

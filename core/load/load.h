@@ -13,8 +13,8 @@ namespace orrery {
 
 class Params;
 
-// Parses a scene strictly. Meshes and images that it names come from `assets`. Throws InputError with up to
-// 20 problems, each with its JSON Pointer, MalformedJson if the text is not JSON, or Cancelled. Thread-safe,
+// Parses a scene strictly. Reads its meshes and images from `assets`. Throws InputError with up to 20
+// problems, each with its JSON Pointer, MalformedJson if the text is not JSON, or Cancelled. Thread-safe,
 // except for `assets`. The scene is immutable.
 std::shared_ptr<const Scene> load_scene(const Document& document, const AssetSource& assets = AssetSource());
 std::shared_ptr<const Scene> load_scene(std::string_view json, const AssetSource& assets = AssetSource(),

@@ -16,7 +16,8 @@ double distance_to(const Boundsd& box, const Vec3d& p) {
   return length(largest(zero, largest(box.lo - p, p - box.hi)));
 }
 
-// Upper bounds of the light that all sources together bring to one point, as point lights and with extents.
+// Upper bounds of the incident light from all lights together at one point: with lights as points, and with
+// their extents.
 struct DirectLight {
   Vec3d of_points{0.0}, of_extents{0.0};
 };
@@ -51,11 +52,11 @@ Vec3d interreflected(const Vec3d& own, const Vec3d& albedo) {
 
 }  // namespace
 
-// Bounds the radiance that each technique can find. `own` is the radiance that a surface emits and reflects
-// directly from light sources. All other radiance that it reflects or refracts is an average over other
-// surfaces. The maximum V over all surfaces is therefore at most the maximum of own + albedo V. Ray trees
-// follow only mirror reflection and refraction, a share R; `own` is then at most 1 - R of the limit, except
-// for emission.
+// Bounds the radiance that each technique can compute. `own` is the radiance that a surface emits and
+// reflects directly from light sources. All other radiance that it reflects or refracts is an average over
+// other surfaces. The maximum V over all surfaces is therefore at most the maximum of own + albedo V. Ray
+// trees follow only mirror reflection and refraction, a fraction R of the light. Except for emission, `own`
+// is then at most 1 - R of the limit.
 void find_radiance_ranges(const Scene& scene, const std::vector<bool>& used, SceneFacts& facts) {
   const DirectLight light = find_direct_light(scene, facts);
   Vec3d tree = max_sky_radiance(scene), paths = tree;

@@ -19,7 +19,7 @@ constexpr std::size_t kMaxPrimitives = 256;
 // Sample times of a motion: evenly spaced ones, both ends included, and key times.
 constexpr int kEvenMoments = 9;
 constexpr std::size_t kMaxKeyTimes = 16;
-// Rays toward all primitives in total and the minimum per primitive, within kMaxTests.
+// Maximum total number of rays toward primitives, and minimum number per primitive, within kMaxTests.
 constexpr std::size_t kManyRays = 1024, kFewestRays = 6;
 constexpr std::size_t kMaxTests = 1u << 19;  // ray-primitive tests, over all sample times
 constexpr double kCoincident = 1e-13;        // times the largest coordinate; nearer surfaces count as one
@@ -83,8 +83,8 @@ bool may_meet(const Boundsd& box, const Ray<double>& ray) {
                 std::numeric_limits<double>::max());
 }
 
-// Curved mirrors visible from one curved mirror, the distance to the nearest, and the radius of curvature of
-// the viewing mirror there.
+// Curved mirrors visible from one curved mirror, and the distance to the nearest. `radius` is the radius of
+// curvature of the viewing mirror at the point closest to it.
 struct VisibleMirrors {
   std::set<std::size_t> others;
   double distance = std::numeric_limits<double>::infinity(), radius = 0;
@@ -130,8 +130,9 @@ class LayerGapSearch {
     return times;
   }
 
-  // Measures all primitives, or only moving ones. Each round traces one ray toward each primitive;
-  // overlapping pairs follow.
+  // Measures all primitives, or only moving ones if `moving_alone`. Each round traces one ray toward each
+  // primitive. Pairs with overlapping boxes are measured afterwards. Stops when the total number of
+  // ray-primitive tests exceeds `before` + `tests`.
   void measure_placed(bool moving_alone, std::size_t before, std::size_t tests) {
     max_tests_ = before + tests / 2;
     std::vector<std::vector<Ray<double>>> rays;
@@ -152,8 +153,8 @@ class LayerGapSearch {
     measure_pairs(moving_alone);
   }
 
-  // Measures layers of two primitives that overlap only in part, by rays through the middle of their boxes'
-  // intersection.
+  // Measures the distance between the surfaces of two primitives that overlap only in part, with a ray
+  // through the middle of the intersection of their boxes.
   void measure_pairs(bool moving_alone) {
     for (std::size_t i = 0; i < placed_.size(); ++i) {
       interruption_point();
@@ -238,9 +239,9 @@ class LayerGapSearch {
     return box;
   }
 
-  // Returns rays that may hit the primitive. For a triangle: along its normal, at its middle and near its
-  // corners. For an unbounded primitive: from look_at and from a point near it. For others: toward the middle
-  // of the box.
+  // Returns rays that may hit the primitive. Triangles: along the normal, at the middle and near the corners.
+  // Unbounded primitives: from look_at and from a point near it. Other primitives: toward the middle of the
+  // box.
   std::vector<Ray<double>> rays_at(const PlacedPrimitive& placed) const {
     std::vector<Ray<double>> rays;
     const std::vector<HullTriangle> hull = placed.kernel->hull(placed.index);
@@ -269,7 +270,7 @@ class LayerGapSearch {
           rays.push_back({middle + toward * away, -toward});
         }
   }
-  // Returns a point off the lines in which surfaces placed about look_at may intersect.
+  // Returns a point near look_at that is unlikely to be on a line where surfaces intersect.
   Vec3d beside_look_at() const {
     const Vec3d &at = scene_.placement.look_at, back = scene_.placement.eye - at;
     return at + (back + tangents_of(safe_normalize(back)).first * length(back) * 0.5) * 0.25;
@@ -334,9 +335,9 @@ class LayerGapSearch {
     seen.others.insert(*other);
     if (distance < seen.distance) seen.distance = distance, seen.radius = radius;
   }
-  // Ray errors grow by 1 + 2 d / r on the way to a mirror at distance d. About (r / (d + r))^2 of the rays
-  // that leave a mirror hit any one of the others. The growth is weighted by the root of the share that hits
-  // any, because errors count by their mean square.
+  // Ray errors grow by a factor of 1 + 2 d / r on the way to a mirror at distance d. Each of the other
+  // mirrors is hit by a fraction of about (r / (d + r))^2 of the rays that leave a mirror. The growth is
+  // weighted by the square root of the fraction that hits any mirror, because errors are averaged as squares.
   void take_mirror(const PlacedPrimitive& from, const VisibleMirrors& seen) {
     const auto& [others, d, r] = seen;
     if (others.empty()) return;
@@ -345,8 +346,8 @@ class LayerGapSearch {
     if (counted > spacing_.mirrors.growth)
       spacing_.mirrors = {counted, r, pointer_to_object(scene_, from.number)};
   }
-  // Estimates the radius from the curvatures in two perpendicular directions: exact for a cylinder, r / sqrt
-  // 2 for a sphere.
+  // Estimates the radius from the curvatures in two perpendicular directions: exact for a cylinder, too small
+  // by a factor of sqrt(2) for a sphere.
   static double radius_at(const std::array<SurfaceAt, 3>& at) {
     const auto curvature = [&](const SurfaceAt& beside) {
       return length(beside.shading - at[0].shading) / length(beside.position - at[0].position);
@@ -367,8 +368,8 @@ class LayerGapSearch {
     return shares_[static_cast<std::size_t>(scene_.material_of[static_cast<std::size_t>(placed.number)])];
   }
 
-  // Returns the distance to the nearest primitive along `along` for which is_such(primitive, surface) holds,
-  // or infinity.
+  // Returns the distance to the nearest primitive along `along` for which is_such(primitive, surface) is
+  // true, or infinity.
   template <class IsSuch>
   double nearest(const SurfaceAt& from, const Vec3d& along, const IsSuch& is_such) {
     const double least = kCoincident * magnitude_;

@@ -4,9 +4,10 @@
 
 namespace orrery {
 
-// Distances between the surfaces of a scene. Double-precision rays leave a few points of each primitive along
-// its normal, at nine times of the scene's motion and at key times. Covers the first 256 primitives; measures
-// mirrors only in scenes with no more.
+// Distances between the surfaces of a scene, in metres. They are measured with double-precision rays along
+// the normals at a few points of each primitive. A moving scene is measured at nine evenly spaced times and
+// at up to 16 key times. Only the first 256 primitives are measured. Mirrors are measured only in scenes with
+// at most 256 primitives.
 struct SurfaceGaps {
   // Smallest distance between two parallel surfaces, of one body or of two.
   LocatedValue layer_distance{std::numeric_limits<double>::infinity(), ""};

@@ -7,14 +7,14 @@
 namespace orrery {
 
 // Albedo as a function of a cosine mu in [0, 1]: a Chebyshev series in s = (1 + c) mu / (c + mu). Microfacet
-// albedos are smooth in s if the scale c is the roughness or slightly more.
+// albedos are smooth functions of s if the scale c equals alpha or is slightly larger.
 template <class N, std::size_t kTerms>
 struct AlbedoSeries {
   std::array<N, kTerms> coefficients;
   N scale;
   N mean;  // hemispherical mean: the integral of 2 mu E(mu)
 
-  // Evaluates the series by Clenshaw's recurrence. Returns a value in [0, 1].
+  // Returns the series at `mu`, clamped to [0, 1]. Uses Clenshaw's recurrence.
   [[gnu::always_inline]] N at(const N& mu) const {
     using T = ScalarOf<N>;
     const N s = (T(1) + scale) * mu / (scale + mu);
@@ -30,7 +30,7 @@ struct AlbedoSeries {
   }
 };
 
-// Returns the Chebyshev polynomial of degree j at node k of `terms` nodes.
+// Returns the Chebyshev polynomial of degree j at the k-th of `terms` Chebyshev nodes.
 inline double chebyshev_cosine(std::size_t terms, std::size_t j, std::size_t k) {
   return sine_cosine_turns(static_cast<double>(j * (2 * k + 1)) / (4.0 * static_cast<double>(terms))).cosine;
 }
@@ -40,7 +40,7 @@ double series_node(double scale, std::size_t k) {
   return scale * s / (1 + scale - s);
 }
 
-// Returns the series through values at the cosines series_node(scale, k).
+// Returns the series that interpolates `values` at the cosines series_node(scale, k).
 template <std::size_t kTerms>
 AlbedoSeries<double, kTerms> series_through(const std::array<double, kTerms>& values, double scale) {
   AlbedoSeries<double, kTerms> series{{}, scale, 0};

@@ -7,15 +7,15 @@
 
 namespace orrery {
 
-// Cook-Torrance model ("A Reflectance Model for Computer Graphics", TOG 1982): a diffuse share plus facets in
+// Cook-Torrance model ("A Reflectance Model for Computer Graphics", TOG 1982): a diffuse lobe plus facets in
 // V-shaped grooves with Beckmann-distributed slopes. Light reflected between facets is lost, as in the paper.
 template <class N>
 struct CookTorrance {
   Vec3<N> n, k;      // index of refraction and extinction of the facets
   Vec3<N> diffuse;   // diffuse albedo
-  Vec3<N> specular;  // weight of the facets' reflection
+  Vec3<N> specular;  // weight of the facet reflection
   N slope;           // root mean square slope of the facets
-  N chance;          // probability of sampling a facet
+  N chance;          // probability of sampling a facet, with Lobes::all
 
   static CookTorrance<double> read(Params& p);
   MaterialTraits traits() const {
@@ -39,8 +39,8 @@ struct CookTorrance {
             fresnel_conductor(n.z, k.z, cosine)};
   }
 
-  // Evaluates the model: Beckmann's normal density exp(-tan^2 / m^2) / (pi m^2 cos^4), and the masking of
-  // V-shaped grooves min(1, 2 H.N V.N / V.H, 2 H.N L.N / V.H).
+  // Evaluates the model: Beckmann's normal density exp(-tan^2 / m^2) / (pi m^2 cos^4), and the masking term
+  // of V-shaped grooves, min(1, 2 H.N V.N / V.H, 2 H.N L.N / V.H).
   [[gnu::always_inline]] Scattered<N> scattered(const Vec3<N>& viewer, const Vec3<N>& light, const MaskOf<N>&,
                                                 Lobes lobes) const {
     using T = ScalarOf<N>;

@@ -7,9 +7,8 @@ namespace orrery {
 
 // Kernel of materials that scatter over the whole hemisphere and are sampled in proportion to the cosine. In
 // addition to the members for MaterialRecords, a record has
-//   Vec3<N> reflectance;                    approximate albedo under uniform light
-//   Vec3<N> pi_brdf(light, viewer, between) pi times the bidirectional reflectance distribution function, of
-//                                           N.L > 0, N.V and L.V
+//   Vec3<N> reflectance;                     approximate albedo under uniform light
+//   Vec3<N> pi_brdf(light, viewer, between)  pi times the BRDF, as a function of N.L > 0, N.V and L.V
 template <template <class> class Record, class T>
 class DiffuseKernel final : public MaterialRecords<Record, T> {
  public:
@@ -38,7 +37,7 @@ class DiffuseKernel final : public MaterialRecords<Record, T> {
     });
   }
 
-  // Samples in proportion to the cosine; the weight f cos / pdf is pi f.
+  // Samples directions with density proportional to the cosine. The weight f cos / pdf is then pi f.
   void sample(const RayBatch<T>& rays, const HitBatch<T>&, const SurfaceBatch<T>& surface,
               const PathDraws<T>& draws, const LaneGroups& groups, Lobes,
               ScatterBatch<T>& out) const override {

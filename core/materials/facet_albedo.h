@@ -9,14 +9,15 @@
 // Albedos of GGX microfacets with Fresnel reflection, computed by quadrature when a material is read.
 namespace orrery {
 
-inline constexpr double kMinAlpha = 1e-3;  // GGX parameter; smaller values count as smooth
+inline constexpr double kMinAlpha = 1e-3;  // smallest GGX alpha of a rough surface
 
 template <class N>
 using FacetAlbedo = AlbedoSeries<N, 20>;
 
-// Returns the mean of share(viewer, normal, seen) over the normals visible at a cosine mu, where seen(cosine
-// of the light) is G2 / G1. Uses a Fibonacci lattice over half of the azimuths. The error is 1e-3 for shares
-// with the step of total reflection, and 2e-4 for smooth ones.
+// Returns the mean of share(viewer, normal, seen) over the normals visible at a cosine mu, as a series in mu.
+// seen(c) is G2 / G1 for light at cosine c. Samples the normals on a Fibonacci lattice over half of the
+// azimuths. The absolute error is 1e-3 if `share` has the step of total reflection, and 2e-4 if `share` is
+// smooth.
 template <class Share>
 FacetAlbedo<double> facet_albedo(double alpha, double scale, const Share& share) {
   constexpr std::size_t kTerms = std::tuple_size_v<decltype(FacetAlbedo<double>::coefficients)>;
@@ -40,14 +41,14 @@ FacetAlbedo<double> facet_albedo(double alpha, double scale, const Share& share)
   return series_through(values, scale);
 }
 
-// Returns the albedo of facets that mirror the share `fresnel` of the cosine to their normal.
+// Returns the albedo of facets with reflectance fresnel(cosine to the facet normal).
 template <class Fresnel>
 FacetAlbedo<double> mirrored_albedo(double alpha, const Fresnel& fresnel) {
   const auto share = [&](const Vec3d& viewer, const Vec3d& normal, const auto& seen) {
     const double light = mirrored_about(viewer, normal).z;
     return light > 0 ? fresnel(dot(viewer, normal)) * seen(light) : 0.0;
   };
-  constexpr double kMinScale = 0.1;  // Fresnel terms vary with mu itself
+  constexpr double kMinScale = 0.1;  // the width of Fresnel terms in mu does not depend on alpha
   return facet_albedo(alpha, std::max(alpha, kMinScale), share);
 }
 

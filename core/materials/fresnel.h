@@ -2,12 +2,12 @@
 
 #include "core/math/lanes.h"
 
-// Fresnel reflectances of smooth surfaces for unpolarised light. Cosines are of angles to the normal, in [0,
-// 1].
+// Fresnel reflectances of smooth surfaces for unpolarised light. Cosines are those of the angles to the
+// normal, in [0, 1].
 namespace orrery {
 
-// Returns Schlick's approximation F0 + (1 - F0) (1 - cos)^5. REQUIRES: `cosine` is in the optically thinner
-// medium.
+// Returns Schlick's approximation F0 + (1 - F0) (1 - cos)^5. REQUIRES: `cosine` is that of the direction in
+// the optically thinner medium.
 template <class N>
 [[gnu::always_inline]] inline N fresnel_schlick(const N& f0, const N& cosine) {
   const N x = N(ScalarOf<N>(1)) - cosine;
@@ -15,8 +15,8 @@ template <class N>
   return f0 + (ScalarOf<N>(1) - f0) * (x2 * x2 * x);
 }
 
-// Returns the reflectance between two dielectrics. eta is the index on the incident side over that on the
-// transmitted side.
+// Returns the reflectance between two dielectrics. `eta` is the index of refraction on the incident side
+// divided by the index on the transmitted side.
 template <class N>
 [[gnu::always_inline]] inline N fresnel_dielectric(const N& eta, const N& cos_incident,
                                                    const N& cos_transmitted) {
@@ -25,7 +25,8 @@ template <class N>
   return (s * s + p * p) * ScalarOf<N>(0.5);
 }
 
-// Reflectance between two dielectrics from the cosine of incidence alone; 1 beyond the critical angle.
+// Result of split_dielectric(), which needs only the cosine of incidence. Beyond the critical angle, the
+// reflectance is 1 and cos_transmitted is 0.
 template <class N>
 struct DielectricSplit {
   N reflectance, cos_transmitted;
@@ -53,7 +54,7 @@ inline double mean_dielectric(double eta) {
   return sum;
 }
 
-// Returns the reflectance of a metal with index n and extinction k, from air.
+// Returns the reflectance of a metal in air, with index of refraction n and extinction coefficient k.
 template <class N>
 [[gnu::always_inline]] inline N fresnel_conductor(const N& n, const N& k, const N& cosine) {
   using T = ScalarOf<N>;

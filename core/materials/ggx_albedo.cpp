@@ -8,11 +8,11 @@ namespace orrery {
 namespace {
 
 constexpr std::size_t kTerms = 14;
-constexpr std::size_t kRows = 32;  // values of alpha, evenly spaced up to 1
+constexpr std::size_t kRows = 32;  // values of alpha, evenly spaced in [0, 1]
 using Row = std::array<double, kTerms>;
 
 // Returns the mean of G2 / G1 over the normals visible at cosine mu, by the midpoint rule. Uses half of the
-// azimuths, because the other half mirrors them.
+// azimuths, because the other half is symmetric.
 double albedo(double alpha, double mu) {
   constexpr int kDepths = 256, kAzimuths = 32;
   const Ggx<double> facets{alpha};
@@ -29,7 +29,7 @@ double albedo(double alpha, double mu) {
   return sum / (kDepths * kAzimuths);
 }
 
-// Returns the albedos at the nodes of the series, for each alpha.
+// Returns one row per alpha: the albedos at the nodes of the series.
 std::array<Row, kRows> make_table() {
   constexpr double kMinAlpha = 1e-4;  // as alpha goes to 0, E depends only on mu / alpha
   std::array<Row, kRows> table;

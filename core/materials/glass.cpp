@@ -6,12 +6,13 @@
 namespace orrery {
 namespace {
 
-// Returns the approximate spread of refracted directions, divided by alpha. Glass with a spread below
-// kMinSpread counts as smooth.
+// Returns the approximate angular spread of refracted rays per unit of alpha. Glass with a spread below
+// kMinSpread is treated as smooth.
 double spread_by_index(double ior) { return std::abs(std::log2(ior)); }
 constexpr double kMinSpread = 1e-4;
 
-// Returns the single-scattering albedo: all light leaves at once, except light that hits another facet.
+// Returns the single-scattering albedo of facets that absorb nothing: only light that hits a second facet is
+// missing.
 FacetAlbedo<double> lossless_albedo(double alpha, double far_index) {
   const auto share = [&](const Vec3d& viewer, const Vec3d& normal, const auto& seen) {
     const double to_viewer = dot(viewer, normal), eta = 1 / far_index;
@@ -20,24 +21,24 @@ FacetAlbedo<double> lossless_albedo(double alpha, double far_index) {
     const double on = eta * viewer.z - (eta * to_viewer - cos_transmitted) * normal.z;
     return (back > 0 ? mirrored * seen(back) : 0.0) + (on > 0 ? (1 - mirrored) * seen(on) : 0.0);
   };
-  constexpr double kStepScale = 0.3;  // the critical angle is a step in mu itself
+  constexpr double kStepScale = 0.3;  // the step at the critical angle is sharp at any alpha
   return facet_albedo(alpha, far_index < 1 ? std::max(alpha, kStepScale) : alpha, share);
 }
 
 }  // namespace
 
-// The transmitted shares of multiple scattering follow from the mean Fresnel reflectance. Both are scaled
-// down to be at most 1 and to keep f / n^2 symmetric: see Glass. n^2 (1 - mean F) is the same from both
-// sides.
+// Computes the transmitted fractions of multiple scattering from the mean Fresnel reflectance F. Scales them
+// so that both are at most 1 and f / n^2 is symmetric: see Glass. F is computed on the optically thinner
+// side, which has no total reflection. n^2 (1 - F) is equal on both sides.
 template <class N>
 Glass<double> Glass<N>::read(Params& p) {
-  const double ior =
-      p.number("ior", "Index of refraction, inside over outside.", {.min = 0.1, .max = 10}, 1.5);
+  const double ior = p.number("ior", "Index of refraction inside, divided by the index outside.",
+                              {.min = 0.1, .max = 10}, 1.5);
   const double roughness = p.number(
       "roughness", "Roughness from 0 (smooth) to 1; its square is the alpha of the GGX distribution.",
       {.min = 0, .max = 1}, 0.0);
   const Vec3d filter =
-      p.color("filter", "Share of light that remains after one metre inside, per channel.", Vec3d(1), 1);
+      p.color("filter", "Transmittance after one metre inside, 0 to 1 per channel.", Vec3d(1), 1);
   Glass<double> glass{};
   glass.body = {ior, normal_reflectance(ior, 0.0), 1.0, log2_filter_of(filter)};
   const double alpha = roughness * roughness;

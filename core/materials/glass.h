@@ -12,15 +12,16 @@ namespace orrery {
 // facets leaves on both sides in lobes after Kulla and Conty (SIGGRAPH course, 2017), so that no light is
 // lost at any roughness. With alpha 0 the surface is smooth.
 //
-// Radiance is stored divided by the squared index of refraction, which no surface changes, as in Refractive.
-// Therefore f(in, out) / n_in^2 = f(out, in) / n_out^2, and glass in uniform light is invisible.
+// Radiance is stored divided by the squared index of refraction, as in Refractive. Refraction does not change
+// this quotient. Therefore f(in, out) / n_in^2 = f(out, in) / n_out^2, and glass in uniform light is
+// invisible.
 template <class N>
 struct Glass {
   Refractive<N> body;  // uses exact Fresnel equations
   N alpha;             // GGX parameter; 0: smooth
   // Single-scattering albedos of the facets, seen from outside and from inside.
   FacetAlbedo<N> outside, inside;
-  // Transmitted share of multiple scattering, seen from outside and from inside.
+  // Transmitted fractions of multiply scattered light that arrives from outside and from inside.
   N through_outside, through_inside;
 
   static Glass<double> read(Params& p);
@@ -45,7 +46,8 @@ struct Glass {
     return Vec3<N>(select(alpha > zero, one, zero));
   }
 
-  // Returns the transmittance of the body. `travelled` may be uninitialised if no material filters.
+  // Returns the transmittance of the body over `travelled` metres. `travelled` may be uninitialised if no
+  // material filters.
   Vec3<N> body_transmittance(const MaskOf<N>& is_inside, const N& travelled) const {
     const N zero(ScalarOf<N>(0));
     const auto filters = is_inside && max_component(-body.log2_filter) > zero;
@@ -53,8 +55,8 @@ struct Glass {
     return body.filter(select(filters, travelled, zero));
   }
 
-  // Evaluates the lobes with the generalised half vector V + eta L. eta is the index on the light's side over
-  // that on the viewer's side.
+  // Evaluates the lobes with the generalised half vector V + eta L. eta is the index of refraction on the
+  // light's side divided by the index on the viewer's side.
   [[gnu::always_inline]] Scattered<N> scattered(const Vec3<N>& viewer, const Vec3<N>& light,
                                                 const MaskOf<N>& is_inside, Lobes) const {
     using T = ScalarOf<N>;
@@ -71,10 +73,10 @@ struct Glass {
     const N to_viewer = dot(viewer, h) * along, to_light = dot(light, h) * along;
     const N seen = min_first(one, max_first(zero, to_viewer)), beyond = max_first(zero, -to_light);
     const N into = one / far_index;
-    // Transmission uses both cosines: near the critical angle one barely determines the other.
+    // Transmission uses both cosines, because near the critical angle one cosine barely determines the other.
     const N mirrored =
         select(through, fresnel_dielectric(into, seen, beyond), split_dielectric(into, seen).reflectance);
-    // Jacobian d(half) / d(light), relative to that of a mirror.
+    // Jacobian d(half) / d(light), relative to the Jacobian of a mirror reflection.
     const N change = T(-4) * to_viewer * to_light * eta * eta / (half.length * half.length);
     const auto possible = half.length > zero && to_viewer > zero && (!through || to_light < zero);
     const N share = select(possible, select(through, N((one - mirrored) * change), mirrored), zero);
@@ -88,7 +90,8 @@ struct Glass {
     return {Vec3<N>((single + passed_viewer * passed_light * spread.chance * spread.scale) * cosine), pdf};
   }
 
-  // Samples a visible facet that mirrors or refracts, or a direction in proportion to the cosine.
+  // Samples either a visible facet, which mirrors or refracts, or a cosine-weighted direction on one of the
+  // sides.
   DrawnDirection<N> drawn(const Vec3<N>& viewer, const MaskOf<N>& is_inside, Lobes,
                           const LobeDraw<N>& draw) const {
     using T = ScalarOf<N>;
@@ -111,8 +114,8 @@ struct Glass {
  private:
   // Lobe of multiple scattering on the light's side.
   struct MultipleLobe {
-    N chance;  // probability of the light's side
-    N scale;   // one over the mean multiple-scattering share of that side
+    N chance;  // probability of sampling the light's side
+    N scale;   // 1 / (1 - mean albedo of the light's side); 0 if that albedo is 1
   };
   struct MultipleScattering {
     N viewer, light;

@@ -7,7 +7,7 @@ namespace orrery {
 
 template <class N>
 Lambert<double> Lambert<N>::read(Params& p) {
-  return {p.coefficient("reflectance", "Share of light that is reflected.", Vec3d(0.8), 1)};
+  return {p.coefficient("reflectance", "Diffuse reflectance, 0 to 1 per channel.", Vec3d(0.8), 1)};
 }
 
 namespace {

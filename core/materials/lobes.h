@@ -7,7 +7,7 @@
 
 namespace orrery {
 
-// Scattering from one direction of light: see MaterialKernel::evaluate().
+// Result of MaterialKernel::evaluate() for one direction of light.
 template <class N>
 struct Scattered {
   Vec3<N> pi_bsdf_cos;
@@ -21,8 +21,7 @@ struct DrawnDirection {
   MaskOf<N> through;
 };
 
-// Random numbers in [0, 1) that choose a direction. `side` is for decisions that depend on the sampled
-// microfacet.
+// Random numbers in [0, 1) for sampling a direction. `side` decides between reflection and transmission.
 template <class N>
 struct LobeDraw {
   N u, v, side;
@@ -40,8 +39,8 @@ struct LobeDraw {
   }
 };
 
-// Returns the probability of sampling a lobe of albedo `own` rather than one of albedo `other`. Each lobe
-// gets at least 0.05, but an absent lobe gets 0.
+// Returns the probability of sampling a lobe of albedo `own` rather than one of albedo `other`. Returns 0 if
+// only `own` is 0, 1 if `other` is 0, and otherwise a value in [0.05, 0.95].
 template <class N>
 [[gnu::always_inline]] inline N lobe_chance(const N& own, const N& other) {
   using T = ScalarOf<N>;
@@ -53,11 +52,11 @@ template <class N>
 // Kernel of materials whose scattering depends on both directions. In addition to the members for
 // MaterialRecords, a record has the following members. Directions are in ShadingFrame coordinates, with the
 // viewer above the surface.
-//   N rough() const                                           0: only the derived kernel samples
-//   Vec3<N> ambient_reflectance(cosine, lobes) const              reflected ambient light toward a viewer
-//   Scattered<N> scattered(viewer, light, inside, lobes)      light on either side of the surface
-//   DrawnDirection<N> drawn(viewer, inside, lobes, LobeDraw)  in proportion to the density of scattered()
-//   Vec3<N> body_transmittance(inside, travelled)                         transmittance of the body
+//   N rough() const                                           0: smooth, sampled by the derived kernel only
+//   Vec3<N> ambient_reflectance(cosine, lobes) const          reflectance of ambient light toward a viewer
+//   Scattered<N> scattered(viewer, light, inside, lobes)      value and density for light on either side
+//   DrawnDirection<N> drawn(viewer, inside, lobes, LobeDraw)  direction with the density of scattered()
+//   Vec3<N> body_transmittance(inside, travelled)             transmittance along `travelled` metres
 template <template <class> class Record, class T>
 class LobeKernel : public MaterialRecords<Record, T> {
  public:
@@ -107,7 +106,7 @@ class LobeKernel : public MaterialRecords<Record, T> {
   }
 
  protected:
-  // Sets `out` of these lanes to a sample of these lobes of the record.
+  // Samples the `lobes` of the record. Sets the lanes `mine` of `out`.
   void sample_rough(const RayBatch<T>& rays, const SurfaceBatch<T>& surface, int i, const MaskOf<N>& mine,
                     const Record<N>& record, Lobes lobes, const LobeDraw<N>& draw,
                     ScatterBatch<T>& out) const {
@@ -131,8 +130,8 @@ class LobeKernel : public MaterialRecords<Record, T> {
   }
 
  private:
-  // Returns the lanes where the viewer is above the surface, and the light is on the same side of the shading
-  // and the geometric surface.
+  // Returns the lanes where the viewer is above the shading surface, and the light is on the same side of the
+  // shading and the geometric surface.
   static MaskOf<N> on_one_side(const Vec3<N>& local_viewer, const Vec3<N>& local_light,
                                const N& true_cosine) {
     return local_viewer.z > N(T(0)) && local_light.z * true_cosine > N(T(0));

@@ -5,17 +5,20 @@
 #include "core/model/material.h"
 #include "core/model/record.h"
 
-// A material type is one record, `template <class N> struct Rough`, with
-//   static Rough<double> read(Params&);         in the .cpp, which registers the type
-//   MaterialTraits traits() const;              of a Rough<double>
-//   RoundingLimit rounding() const;             of a Rough<double>; optional
-//   double mirrored_share() const;              of a Rough<double>, if it mirrors: see MaterialSet
-//   double max_albedo() const;              of a Rough<double>, if it may create energy
-//   ReflectionLimits limits() const;            of a Rough<double>, if they are known
-// and its formulas, plus a kernel class `Kernel<T>` that derives from MaterialRecords<Rough, T>.
+// A material type is one record, `template <class N> struct Rough`, and one kernel class `Kernel<T>` that
+// derives from MaterialRecords<Rough, T>. The record contains the formulas and the following functions, which
+// are called for Rough<double> only. The last four are optional: see MaterialSet for their meaning and
+// defaults.
+//   static Rough<double> read(Params&);  defined in the .cpp file, which registers the type
+//   MaterialTraits traits() const;
+//   RoundingLimit rounding() const;
+//   double mirrored_share() const;       if the material mirrors
+//   double max_albedo() const;           if the material may create energy
+//   ReflectionLimits limits() const;     if bounds are known
 namespace orrery {
 
-// Materials of one type in the render's precision, with a loop over the lanes that have one of them.
+// Materials of one type in the render's precision, and a loop over the registers in which surfaces have one
+// of them.
 template <template <class> class Record, class T>
 class MaterialRecords : public MaterialKernel<T> {
  public:
@@ -26,7 +29,8 @@ class MaterialRecords : public MaterialKernel<T> {
   }
 
  protected:
-  // Calls visit(i, mine, record) for each register with lanes of these materials.
+  // Calls visit(i, mine, record) for each register, starting at ray i, in which lanes `mine` have these
+  // materials.
   template <class Visit>
   void for_each_register(const SurfaceBatch<T>& surface, const LaneGroups& groups, const Visit& visit) const {
     const int last = first_ + static_cast<int>(records_.size());

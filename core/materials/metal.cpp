@@ -23,7 +23,7 @@ double mean_reflectance(double n, double k) {
   return sum / kSteps;
 }
 
-// Reads the index of refraction and the extinction, by name or as numbers.
+// Reads the index of refraction and the extinction coefficient, as numbers or by the name of a metal.
 std::pair<Vec3d, Vec3d> read_indices(Params& p) {
   if (p.form({{"n", "k"}, {"name"}}) == 0) {
     const Vec3d n = p.color("n", "Index of refraction, per channel.");
@@ -99,7 +99,7 @@ class MetalKernel final : public MaterialRecords<Metal, T> {
     });
   }
 
-  // Samples a visible microfacet that mirrors, or a direction in proportion to the cosine: see
+  // Samples either a visible microfacet, which mirrors, or a cosine-weighted direction: see
   // Metal::multiple_share().
   void sample(const RayBatch<T>& rays, const HitBatch<T>&, const SurfaceBatch<T>& surface,
               const PathDraws<T>& draws, const LaneGroups& groups, Lobes,
@@ -147,16 +147,16 @@ class MetalKernel final : public MaterialRecords<Metal, T> {
     return min_first(N(T(1)), max_first(N(T(0)), dot(viewer, normal)));
   }
 
-  // Returns the lanes where both directions are above the shading surface, and the light also above the
-  // geometric surface.
+  // Returns the lanes of rough metals where both directions are above the shading surface, and the light is
+  // also above the geometric surface.
   static MaskOf<N> reflects(const Metal<N>& metal, const Vec3<N>& local_viewer, const Vec3<N>& local_light,
                             const N& true_cosine) {
     const N zero(T(0));
     return metal.alpha > zero && local_viewer.z > zero && local_light.z > zero && true_cosine > zero;
   }
 
-  // Samples a direction. point.u chooses the lobe; its remainder, rescaled to [0, 1), and point.v choose the
-  // direction.
+  // Samples a direction. point.u selects the lobe. The remainder of point.u, rescaled to [0, 1), and point.v
+  // select the direction.
   static Vec3<N> drawn(const Metal<N>& metal, const ShadingFrame<N>& frame, const Vec3<N>& local_viewer,
                        const SamplePoint<N>& point) {
     const N one(T(1)), last(T(1) - std::numeric_limits<T>::epsilon() / 2);

@@ -15,7 +15,7 @@ namespace orrery {
 // metal that mirrors all light therefore has albedo 1 at any roughness. With alpha 0 it is a mirror.
 template <class N>
 struct Metal {
-  Vec3<N> n, k;  // index of refraction and extinction
+  Vec3<N> n, k;  // index of refraction and extinction coefficient
   Vec3<N> f0;    // reflectance along the normal
   N alpha;       // GGX parameter; 0: mirror
   GgxAlbedo<N> albedo;
@@ -36,8 +36,8 @@ struct Metal {
             fresnel_conductor(n.z, k.z, cosine)};
   }
 
-  // Result of scattered(): see MaterialKernel::evaluate(). REQUIRES: alpha, N.V and N.L above 0; directions
-  // as for Ggx.
+  // Result of scattered(): see MaterialKernel::evaluate(). REQUIRES: alpha, N.V and N.L are above 0.
+  // Directions are in the frame of Ggx.
   struct Scattered {
     Vec3<N> pi_bsdf_cos;
     N pdf;
@@ -56,16 +56,17 @@ struct Metal {
         (one - missing_viewer) * facets.pdf(viewer, half.density) + missing_viewer * light.z * (one / kPi)};
   }
 
-  // Returns the share of light at this cosine that is scattered between facets. sample() chooses cosine
-  // sampling with this probability, which bounds its weight without limits on the choice.
+  // Returns the fraction of light at this cosine that is scattered between facets. MetalKernel::sample() uses
+  // it as the probability of cosine-weighted sampling. This choice bounds the sample weight without clamping
+  // the probability.
   [[gnu::always_inline]] N multiple_share(const N& cosine) const {
     const N one(ScalarOf<N>(1));
     return one - albedo.at(min_first(one, cosine));
   }
 };
 
-// Returns F_ms of Kulla and Conty, from a metal's mean reflectance and the mean albedo of facets that mirror
-// all light: the sum F^2 E / (1 - F (1 - E)) over all bounces.
+// Returns F_ms of Kulla and Conty, the sum over all bounces: F^2 E / (1 - F (1 - E)). F is the mean
+// reflectance of the metal, E the mean albedo of facets that mirror all light.
 inline double multiple_scattering_reflectance(double mean_reflectance, double mean_albedo) {
   return mean_reflectance * mean_reflectance * mean_albedo / (1 - mean_reflectance * (1 - mean_albedo));
 }

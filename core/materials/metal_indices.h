@@ -7,11 +7,11 @@
 
 namespace orrery {
 
-// Measured indices of refraction and extinctions of metals at 650, 550 and 450 nm, used as red, green and
-// blue. Values are interpolated between the tabulated wavelengths. Gold, silver and copper: Johnson and
-// Christy, "Optical constants of the noble metals", Phys. Rev. B 6 (1972). Iron: the same authors, "Optical
-// constants of transition metals", Phys. Rev. B 9 (1974). Aluminium: Rakic, "Algorithm for the determination
-// of intrinsic optical constants of metal films", Applied Optics 34 (1995).
+// Measured indices of refraction and extinction coefficients of metals at 650, 550 and 450 nm, used as red,
+// green and blue. Values are interpolated between the tabulated wavelengths. Gold, silver and copper: Johnson
+// and Christy, "Optical constants of the noble metals", Phys. Rev. B 6 (1972). Iron: the same authors,
+// "Optical constants of transition metals", Phys. Rev. B 9 (1974). Aluminium: Rakic, "Algorithm for the
+// determination of intrinsic optical constants of metal films", Applied Optics 34 (1995).
 struct MetalIndices {
   std::string_view name;
   Vec3d n, k;

@@ -14,8 +14,9 @@ double mean_schlick(double f0) { return f0 + (1 - f0) / 21; }
 
 template <class N>
 MetallicRoughness<double> MetallicRoughness<N>::read(Params& p) {
-  const Vec3d color =
-      p.coefficient("base_color", "Albedo of the base, or reflectance of the metal.", Vec3d(0.8), 1);
+  const Vec3d color = p.coefficient(
+      "base_color", "Albedo of the dielectric base, or reflectance of the metal, 0 to 1 per channel.",
+      Vec3d(0.8), 1);
   const double metallic =
       p.number("metallic", "Metalness: 0 for a dielectric, 1 for a metal.", {.min = 0, .max = 1}, 0.0);
   const double roughness = p.number(
@@ -23,7 +24,7 @@ MetallicRoughness<double> MetallicRoughness<N>::read(Params& p) {
       "Roughness from 0 (smooth) to 1; its square is the alpha of the GGX distribution, at least 0.001.",
       {.min = 0, .max = 1}, 0.5);
   const bool is_strict =
-      p.flag("strict", "Use the formula of glTF 2.0 unchanged, which creates and loses energy.", false);
+      p.flag("strict", "Use the glTF 2.0 formula unchanged, although it does not conserve energy.", false);
   MetallicRoughness<double> found{};
   found.f0 = Vec3d(kDielectric) * (1 - metallic) + color * metallic;
   found.base = color * (1 - metallic);
@@ -44,8 +45,9 @@ MetallicRoughness<double> MetallicRoughness<N>::read(Params& p) {
   return found;
 }
 
-// Takes the maximum over five views, which is mostly at grazing angles. The albedo is the facets' single
-// scattering, plus the base times the mean of 1 - F over light directions.
+// Returns 1 if `strict` is 0. Otherwise returns the maximum over five view directions, mostly grazing ones,
+// where the albedo tends to be largest. The albedo is the single scattering of the facets, plus the base
+// times the mean of 1 - F over light directions.
 template <class N>
 double MetallicRoughness<N>::max_albedo() const {
   if (!(strict > 0)) return 1;

@@ -9,14 +9,14 @@ namespace orrery {
 
 // Metallic-roughness material of glTF 2.0 (Khronos, specification, appendix B): GGX microfacets with
 // Schlick's approximation over a diffuse base. The specification's formula lets the base scatter light that
-// the facets have already mirrored, and loses light scattered between facets. This implementation gives the
-// base the remaining light, as in Plastic, and restores multiple scattering by the lobe of Kulla and Conty.
-// `strict` keeps the specification's formula.
+// the facets have already mirrored, and loses light scattered between facets. Here, the base receives only
+// light that the facets do not reflect, as in Plastic. The lobe of Kulla and Conty restores multiple
+// scattering. `strict` selects the specification's formula.
 template <class N>
 struct MetallicRoughness {
   Vec3<N> f0;              // reflectance along the normal
-  Vec3<N> base;            // strict: base reflectance; else factor of left() of both directions
-  Vec3<N> multiple;        // F_ms; 0 if strict
+  Vec3<N> base;            // strict: base reflectance; otherwise factor of left(viewer) * left(light)
+  Vec3<N> multiple;        // F_ms of Kulla and Conty; 0 if strict
   N strict;                // 1 or 0
   N alpha;                 // GGX parameter
   GgxAlbedo<N> albedo;     // for facets that mirror all light
@@ -47,7 +47,8 @@ struct MetallicRoughness {
   }
   Vec3<N> body_transmittance(const MaskOf<N>&, const N&) const { return Vec3<N>(N(ScalarOf<N>(1))); }
 
-  // Albedos at a cosine: of facets that mirror all light, and single scattering of the actual facets.
+  // Single-scattering albedos at one cosine: `all` of facets that mirror all light, `once` of the actual
+  // facets.
   struct Albedos {
     N all;
     Vec3<N> once;
@@ -57,13 +58,13 @@ struct MetallicRoughness {
     const N all = albedo.at(mu), edge = min_first(all, grazing.at(mu));
     return {all, f0 * (all - edge) + Vec3<N>(edge)};
   }
-  // Returns the share of light that facets leave to the base.
+  // Returns the fraction of light that the facets do not reflect, which reaches the base.
   [[gnu::always_inline]] Vec3<N> left(const Albedos& a) const {
     const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1));
     const Vec3<N> rest = Vec3<N>(one) - a.once - multiple * (one - a.all);
     return {max_first(zero, rest.x), max_first(zero, rest.y), max_first(zero, rest.z)};
   }
-  // Returns the probability of sampling a facet; otherwise sampling is in proportion to the cosine.
+  // Returns the probability of sampling a facet. Otherwise, drawn() samples a cosine-weighted direction.
   [[gnu::always_inline]] N facet_chance(const Albedos& a, Lobes lobes) const {
     const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1));
     if (!with_non_diffuse(lobes)) return zero;

@@ -15,9 +15,9 @@ template <class N>
 struct Ggx {
   N alpha;  // in (0, 1]
 
-  // Length of the half vector, which is twice the cosine between it and each direction, and the normal
-  // density D(h) = alpha^2 / (pi (sin^2 h + alpha^2 cos^2 h)^2). The sine is computed from the tangential
-  // components, because 1 - cos^2 has no digits left in float.
+  // Length of the half vector h = V + L, and the normal density D(h) = alpha^2 / (pi (sin^2 h + alpha^2 cos^2
+  // h)^2). The length is twice the cosine between the half vector and each direction. The sine is computed
+  // from the tangential components, because 1 - cos^2 cancels in float.
   struct Half {
     N length, density;
   };
@@ -46,8 +46,8 @@ struct Ggx {
     return density * ScalarOf<N>(0.5) / (light.z * stretched(viewer.z) + viewer.z * stretched(light.z));
   }
 
-  // Returns an upper bound of pi times brdf() times the light's cosine: D is at most 1 / (pi alpha^2), and
-  // stretched() at least alpha.
+  // Returns an upper bound on pi times brdf() times the cosine of the light: D is at most 1 / (pi alpha^2),
+  // and stretched() is at least alpha.
   N most() const { return ScalarOf<N>(0.5) / (alpha * alpha * alpha); }
 
   // Returns the density per solid angle of a ray mirrored about visible_normal(): G1 D / (4 N.V).
@@ -55,7 +55,7 @@ struct Ggx {
     return density * ScalarOf<N>(0.5) / (viewer.z + stretched(viewer.z));
   }
 
-  // Samples a normal visible to the viewer from u and v in [0, 1), as a point of a spherical cap (Dupuy,
+  // Samples a normal visible to the viewer, from u and v in [0, 1), as a point on a spherical cap (Dupuy,
   // Benyoub, "Sampling Visible GGX Normals with Spherical Caps", HPG 2023, after Heitz, JCGT 2018).
   [[gnu::always_inline]] Vec3<N> visible_normal(const Vec3<N>& viewer, const N& u, const N& v) const {
     using T = ScalarOf<N>;

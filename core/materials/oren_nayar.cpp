@@ -5,12 +5,12 @@
 
 namespace orrery {
 
-// Multiple scattering between facets is coloured by the sum over all bounces: rho^2 E / (1 - rho (1 - E)),
-// with E the mean albedo of white facets.
+// The colour of multiple scattering is the sum over all bounces between facets, rho^2 E / (1 - rho (1 - E)).
+// E is the mean albedo of white facets.
 template <class N>
 OrenNayar<double> OrenNayar<N>::read(Params& p) {
   const Vec3d reflectance =
-      p.coefficient("reflectance", "Share of light that a facet reflects.", Vec3d(0.8), 1);
+      p.coefficient("reflectance", "Reflectance of a facet, 0 to 1 per channel.", Vec3d(0.8), 1);
   const double roughness =
       p.number("roughness", "Roughness from 0 (equal to lambert) to 1.", {.min = 0, .max = 1}, 0.5);
   const double a = 1 / (1 + kFujii * roughness), mean = a * (1 + kMeanG * roughness);

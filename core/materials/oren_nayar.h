@@ -17,7 +17,7 @@ struct OrenNayar {
   Vec3<N> reflectance;
   N roughness;
   N single_scale;          // A of Fujii's model
-  Vec3<N> multiple_scale;  // factor of the product of two grazing_loss()
+  Vec3<N> multiple_scale;  // factor of grazing_loss(N.L) * grazing_loss(N.V)
 
   static OrenNayar<double> read(Params& p);
   MaterialTraits traits() const { return {.lit = true, .glossy = true, .diffuse = true}; }
@@ -41,9 +41,9 @@ struct OrenNayar {
   static constexpr double kFujii = 0.5 - 2 / (3 * std::numbers::pi);
   static constexpr double kMeanG = 2.0 / 3 - 28 / (15 * std::numbers::pi);
 
-  // Returns the light that facets of a white surface do not reflect at once, divided by A roughness: kFujii -
-  // G / pi with G = S (acos mu - S mu) + 2/3 ((S / mu) (1 - S^3) - S) and S the sine of the angle whose
-  // cosine is mu. Written with 1 - S = mu^2 / (1 + S), G needs no division by mu.
+  // Returns the fraction of light that facets of a white surface do not reflect in one bounce, divided by A
+  // and the roughness: kFujii - G / pi with G = S (acos mu - S mu) + 2/3 ((S / mu) (1 - S^3) - S) and S the
+  // sine of the angle whose cosine is mu. Written with 1 - S = mu^2 / (1 + S), G needs no division by mu.
   [[gnu::always_inline]] static N grazing_loss(const N& mu) {
     using T = ScalarOf<N>;
     using std::sqrt;

@@ -5,14 +5,14 @@
 
 namespace orrery {
 
-// The internal reflectance of the coat for diffuse light is 1 - (1 - E) / n^2, with E its mean reflectance
-// from outside.
+// The internal reflectance of the coat for diffuse light is 1 - (1 - E) / n^2, where E is its mean
+// reflectance from outside.
 template <class N>
 Plastic<double> Plastic<N>::read(Params& p) {
   const Vec3d reflectance =
-      p.coefficient("reflectance", "Share of light that the base reflects.", Vec3d(0.8), 1);
-  const double ior =
-      p.number("ior", "Index of refraction of the coat, over outside.", {.min = 1, .max = 10}, 1.5);
+      p.coefficient("reflectance", "Reflectance of the base, 0 to 1 per channel.", Vec3d(0.8), 1);
+  const double ior = p.number("ior", "Index of refraction of the coat, divided by the index outside.",
+                              {.min = 1, .max = 10}, 1.5);
   const double roughness =
       p.number("roughness",
                "Roughness of the coat from 0 (smooth) to 1; its square is the alpha of the GGX distribution.",

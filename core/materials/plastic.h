@@ -6,16 +6,16 @@
 
 namespace orrery {
 
-// Diffuse base under a clear coat, smooth or of microfacets. The base receives light that the coat does not
-// mirror, on the way in and out (Kelemen, Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF
-// Model with Importance Sampling", Eurographics 2001). Light that the coat reflects back from below is
+// Diffuse base under a clear coat, smooth or of microfacets. The base scatters the light that the coat
+// transmits on the way in and out (Kelemen, Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF
+// Model with Importance Sampling", Eurographics 2001). Light that the coat reflects back to the base is
 // coloured again. A white base with its coat therefore has albedo 1 at any roughness.
 template <class N>
 struct Plastic {
-  Vec3<N> base;  // factor of the product of the coat's transmitted shares in both directions
+  Vec3<N> base;  // factor of (1 - mirrored(N.V)) * (1 - mirrored(N.L))
   N ior;
   N alpha;                // GGX parameter; 0: smooth
-  FacetAlbedo<N> mirror;  // reflectance of a rough coat
+  FacetAlbedo<N> mirror;  // albedo of a rough coat
   N mean;                 // reflectance of the coat for uniform light
 
   static Plastic<double> read(Params& p);
@@ -29,7 +29,7 @@ struct Plastic {
   }
 
   N rough() const { return N(ScalarOf<N>(1)); }
-  // Excludes the mirror reflection of a smooth coat.
+  // Returns the reflectance of ambient light, without the mirror reflection of a smooth coat.
   Vec3<N> ambient_reflectance(const N& cosine, Lobes lobes) const {
     const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1)), mirrors = mirrored(cosine);
     return (with_diffuse(lobes) ? base * ((one - mirrors) * (one - mean)) : Vec3<N>(zero)) +
@@ -41,14 +41,14 @@ struct Plastic {
     const N one(ScalarOf<N>(1));
     return split_dielectric(N(one / ior), min_first(one, max_first(N(ScalarOf<N>(0)), cosine))).reflectance;
   }
-  // Returns the share of light at this cosine that the coat mirrors.
+  // Returns the fraction of light at this cosine that the coat mirrors.
   [[gnu::always_inline]] N mirrored(const N& cosine) const {
     const auto facets = alpha > N(ScalarOf<N>(0));
     if (all(facets)) return mirror.at(min_first(N(ScalarOf<N>(1)), cosine));
     if (!any(facets)) return fresnel(cosine);
     return select(facets, mirror.at(min_first(N(ScalarOf<N>(1)), cosine)), fresnel(cosine));
   }
-  // Returns the probability of sampling the coat if it mirrors the share `mirrors`.
+  // Returns the probability of sampling the coat if it mirrors the fraction `mirrors`.
   [[gnu::always_inline]] N coat_chance(const N& mirrors, Lobes lobes) const {
     if (lobes != Lobes::all) return N(ScalarOf<N>(with_non_diffuse(lobes) ? 1 : 0));
     return lobe_chance(mirrors, N((ScalarOf<N>(1) - mirrors) * max_component(base)));
@@ -77,7 +77,7 @@ struct Plastic {
     return found;
   }
 
-  // Samples all lobes except the mirror reflection of a smooth coat, which the caller has sampled.
+  // Samples all lobes except the mirror reflection of a smooth coat, which PlasticKernel::sample() samples.
   DrawnDirection<N> drawn(const Vec3<N>& viewer, const MaskOf<N>&, Lobes lobes,
                           const LobeDraw<N>& draw) const {
     const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1));

@@ -6,10 +6,10 @@
 
 namespace orrery {
 
-// Metal mirror coloured by Fresnel's law.
+// Smooth metal mirror, coloured by Fresnel reflection.
 template <class N>
 struct Reflective {
-  Vec3<N> n, k;  // index of refraction and extinction
+  Vec3<N> n, k;  // index of refraction and extinction coefficient
   Vec3<N> f0;    // reflectance along the normal
   N exact;       // 1: Fresnel's equations, 0: Schlick's approximation
 

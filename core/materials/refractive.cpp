@@ -8,12 +8,13 @@ namespace orrery {
 
 template <class N>
 Refractive<double> Refractive<N>::read(Params& p) {
-  const double ior = p.number("ior", "Index of refraction, inside over outside.", {.min = 0.01, .max = 100});
+  const double ior =
+      p.number("ior", "Index of refraction inside, divided by the index outside.", {.min = 0.01, .max = 100});
   const bool exact =
       p.choice("fresnel", "Reflectance formula: Schlick's approximation or Fresnel's equations.",
                {"schlick", "exact"}, "schlick") == "exact";
   const Vec3d filter =
-      p.color("filter", "Share of light that remains after one metre inside, per channel.", Vec3d(1), 1);
+      p.color("filter", "Transmittance after one metre inside, 0 to 1 per channel.", Vec3d(1), 1);
   return {ior, normal_reflectance(ior, 0.0), exact ? 1.0 : 0.0, log2_filter_of(filter)};
 }
 
@@ -38,7 +39,7 @@ class RefractiveKernel final : public MaterialRecords<Refractive, T> {
     });
   }
 
-  // Samples mirror reflection with the reflectance as probability, otherwise refraction.
+  // Samples the mirrored ray with a probability equal to the reflectance, and otherwise the refracted ray.
   void sample(const RayBatch<T>& rays, const HitBatch<T>& hits, const SurfaceBatch<T>& surface,
               const PathDraws<T>& draws, const LaneGroups& groups, Lobes,
               ScatterBatch<T>& out) const override {

@@ -7,10 +7,10 @@
 
 namespace orrery {
 
-// Clear glass that mirrors and refracts, and may absorb light inside.
+// Smooth glass that mirrors and refracts, and may absorb light inside.
 template <class N>
 struct Refractive {
-  N ior;                // index inside over index outside
+  N ior;                // index of refraction inside / outside
   N f0;                 // reflectance along the normal
   N exact;              // 1: Fresnel's equations, 0: Schlick's approximation
   Vec3<N> log2_filter;  // log2 of the transmittance per metre inside
@@ -20,12 +20,14 @@ struct Refractive {
     return {.mirrors = true, .transmits = true, .filters = log2_filter != Vec3<N>(N(0)), .non_diffuse = true};
   }
   ReflectionLimits limits() const { return {Vec3d(0), Vec3d(0), Vec3d(1), true}; }
+  double mirrored_share() const { return f0; }
 
   struct Split {
     N reflectance;
-    Vec3<N> refracted;  // unit; undefined in total reflection
+    Vec3<N> refracted;  // unit; undefined on total reflection
   };
-  // Applies Snell's law for the side that the ray comes from. The reflectance is 1 beyond the critical angle.
+  // Applies Snell's law to a ray that comes from inside or outside. The reflectance is 1 beyond the critical
+  // angle.
   Split split(const Vec3<N>& direction, const Vec3<N>& normal, const MaskOf<N>& inside) const {
     using std::sqrt;
     using T = ScalarOf<N>;

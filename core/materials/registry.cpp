@@ -4,8 +4,7 @@
 
 namespace orrery {
 
-// One line per type, in the order in which materials are numbered. Each type is defined in the file of its
-// name.
+// One line per type, in the order in which materials are numbered. Type `name` is defined in name.cpp.
 // clang-format off
 #define ORRERY_MATERIALS(add) \
   add(rough)                  \

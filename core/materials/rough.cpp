@@ -24,7 +24,7 @@ Rough<double> Rough<N>::read(Params& p) {
   return rough;
 }
 
-// An error of epsilon in the cosine causes an error of shininess times epsilon in its power.
+// A relative error epsilon of the cosine causes a relative error of shininess * epsilon in its power.
 template <class N>
 RoundingLimit Rough<N>::rounding() const {
   constexpr double kMaxError = 2e-3;
@@ -32,8 +32,8 @@ RoundingLimit Rough<N>::rounding() const {
   return {kMaxError / shininess, "its highlight has an exponent of " + number_text(shininess)};
 }
 
-// Returns the highlight's albedo along the normal, for exponent s and coefficient 1: 2 / (s + 1) for Phong, 8
-// (1 - 2^(-(s + 2) / 2)) / (s + 2) for the half vector.
+// Returns the albedo of a highlight with exponent s and coefficient 1: 2 / (s + 1) for Phong, 8 (1 - 2^(-(s +
+// 2) / 2)) / (s + 2) for Blinn-Phong.
 template <class N>
 double Rough<N>::highlight_albedo() const {
   const double s = shininess;
@@ -61,7 +61,7 @@ class RoughKernel final : public MaterialRecords<Rough, T> {
     });
   }
 
-  // Light from behind contributes neither diffuse light nor a highlight.
+  // Light from behind the surface contributes nothing.
   void evaluate(const Directions<T>& directions, const SurfaceBatch<T>& surface, const LaneGroups& groups,
                 Lobes lobes, Vec3Array<T>& pi_bsdf_cos, Array<T>& pdf) const override {
     const N zero(T(0));

@@ -14,8 +14,8 @@ template <class N>
 struct Rough {
   Vec3<N> ambient, diffuse, specular;  // coefficient times colour
   N shininess;
-  N phong;   // 1: highlight about the mirrored light direction, 0: half vector
-  N chance;  // probability of sampling the highlight among all lobes: 1 if it is the only lobe, else 0
+  N phong;   // 1: Phong (mirrored light direction), 0: Blinn-Phong (half vector)
+  N chance;  // probability of sampling the highlight, with Lobes::all; 0 or 1: see read()
 
   static Rough<double> read(Params& p);
   MaterialTraits traits() const {
@@ -28,11 +28,12 @@ struct Rough {
   RoundingLimit rounding() const;
   double max_albedo() const { return max_component(limits().albedo); }
   ReflectionLimits limits() const;
-  double highlight_albedo() const;  // along the normal, where no part is cut off
+  // Returns the albedo of the highlight for a view along the normal, where the horizon cuts off the least.
+  double highlight_albedo() const;
 
-  // Returns the cosine that the highlight is a power of, or 0 outside the highlight. Arguments are unit
-  // vectors: the normal, toward the light, toward the viewer, and half way between the two. The mirrored
-  // direction is R = 2 (N.L) N - L.
+  // Returns the base of the power that forms the highlight: a cosine in [0, 1], or 0 outside the highlight.
+  // `cosine` is N.L. The vectors are unit: the normal, toward the light, toward the viewer, and half way
+  // between light and viewer. The mirrored direction is R = 2 (N.L) N - L.
   [[gnu::always_inline]] N highlight(const Vec3<N>& normal, const Vec3<N>& light, const Vec3<N>& viewer,
                                      const Vec3<N>& half, const N& cosine) const {
     using T = ScalarOf<N>;
@@ -41,7 +42,7 @@ struct Rough {
     return min_first(N(T(1)), max_first(N(T(0)), c));
   }
 
-  // Minimum exponent for sampling the highlight. Weaker highlights are sampled in proportion to the cosine.
+  // Minimum exponent for sampling the highlight. Cosine-weighted sampling is used for lower exponents.
   static constexpr double kMinShininess = 1;
   [[gnu::always_inline]] N highlight_chance(Lobes lobes) const {
     const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1));
@@ -54,9 +55,9 @@ struct Rough {
     Vec3<N> pi_bsdf_cos;
     N pdf;
   };
-  // Evaluates the lobes. REQUIRES: cosine = N.L > 0. The sampling density is the power of the cosine to the
-  // mirrored viewer, or of the half vector to the normal, which converts by 1 / (4 V.H) to the light's solid
-  // angle.
+  // Evaluates the lobes. REQUIRES: cosine = N.L > 0. A Phong highlight is sampled in proportion to a power of
+  // the cosine to the mirrored viewer. A Blinn-Phong highlight is sampled in proportion to a power of N.H,
+  // which the factor 1 / (4 V.H) converts to the solid angle of the light.
   [[gnu::always_inline]] Scattered scattered(const Vec3<N>& normal, const Vec3<N>& light,
                                              const Vec3<N>& viewer, const Vec3<N>& half, const N& cosine,
                                              Lobes lobes) const {
@@ -75,7 +76,7 @@ struct Rough {
     return found;
   }
 
-  // Samples the highlight by the inverse of this density, from u and v in [0, 1). REQUIRES: N.V > 0.
+  // Samples the highlight with the density of scattered(), from u and v in [0, 1). REQUIRES: N.V > 0.
   [[gnu::always_inline]] Vec3<N> drawn_highlight(const Vec3<N>& normal, const Vec3<N>& viewer, const N& u,
                                                  const N& v) const {
     using T = ScalarOf<N>;
@@ -94,7 +95,7 @@ struct Rough {
   }
 };
 
-// Returns H = (L + V) / |L + V|, or zero if the two are opposite.
+// Returns H = (L + V) / |L + V|, or the zero vector if L = -V.
 template <class N>
 [[gnu::always_inline]] inline Vec3<N> half_vector(const Vec3<N>& light, const Vec3<N>& viewer) {
   using T = ScalarOf<N>;

@@ -4,7 +4,7 @@
 
 namespace orrery {
 
-// Coordinate frame whose third axis is the surface normal. Uses the geometric normal if the interpolated one
+// Coordinate frame whose third axis is the shading normal, or the geometric normal if the shading normal
 // faces away from the viewer.
 template <class N>
 struct ShadingFrame {

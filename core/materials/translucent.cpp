@@ -10,15 +10,17 @@ namespace orrery {
 
 template <class N>
 Translucent<double> Translucent<N>::read(Params& p) {
-  const Vec3d back = p.coefficient("reflectance", "Share of light that is reflected.", Vec3d(0.4), 1);
+  const Vec3d back = p.coefficient("reflectance", "Diffuse reflectance, 0 to 1 per channel.", Vec3d(0.4), 1);
   const Vec3d left(std::min(0.4, 1 - back.x), std::min(0.4, 1 - back.y), std::min(0.4, 1 - back.z));
-  const Vec3d on = p.coefficient("transmittance",
-                                 "Share of light that is transmitted; default: 0.4, or 1 - reflectance if "
-                                 "that is less.",
-                                 left, 1);
+  const Vec3d on =
+      p.coefficient("transmittance",
+                    "Diffuse transmittance, 0 to 1 per channel; default: 0.4, or 1 - reflectance "
+                    "if that is less.",
+                    left, 1);
   const double most = max_component(back + on);
   if (most > 1)
-    p.fail("transmittance", "sum with reflectance must be at most 1 (got " + number_text(most) + ")");
+    p.fail("transmittance",
+           "reflectance + transmittance must be at most 1 in every channel (got " + number_text(most) + ")");
   const double all = max_component(back) + max_component(on);
   return {back, on, all > 0 ? max_component(on) / all : 0};
 }
@@ -87,7 +89,7 @@ class TranslucentKernel final : public MaterialRecords<Translucent, T> {
   static Vec3<N> share(const Translucent<N>& sheet, const MaskOf<N>& through) {
     return select(through, sheet.transmittance, sheet.reflectance);
   }
-  // Returns the probability of sampling the far side.
+  // Returns the probability of sampling a transmitted direction.
   static N through_chance(const Translucent<N>& sheet, Lobes lobes) {
     return lobes == Lobes::all ? sheet.through : N(T(with_non_diffuse(lobes) ? 1 : 0));
   }

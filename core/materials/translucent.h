@@ -6,11 +6,11 @@
 namespace orrery {
 
 // Thin sheet, such as paper or a leaf, with Lambertian scattering on both sides. Reflection is a diffuse
-// lobe, transmission a non-diffuse one.
+// lobe. Transmission is a non-diffuse lobe.
 template <class N>
 struct Translucent {
   Vec3<N> reflectance, transmittance;
-  N through;  // probability of sampling the far side
+  N through;  // probability of sampling a transmitted direction
 
   static Translucent<double> read(Params& p);
   MaterialTraits traits() const {

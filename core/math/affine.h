@@ -14,8 +14,8 @@ struct Affine {
 
   Vec3<N> vector(const Vec3<N>& v) const { return x * v.x + y * v.y + z * v.z; }
   Vec3<N> point(const Vec3<N>& p) const { return vector(p) + origin; }
-  // Multiplies `v` by the transpose of the linear part. On the inverse map, this transforms normals without
-  // normalising them.
+  // Multiplies `v` by the transpose of the linear part. Called on the inverse map, it transforms a normal,
+  // without normalising it.
   Vec3<N> transposed(const Vec3<N>& v) const { return {dot(x, v), dot(y, v), dot(z, v)}; }
 
   template <class M>
@@ -31,22 +31,22 @@ inline Affined compose(const Affined& outer, const Affined& inner) {
   return {outer.vector(inner.x), outer.vector(inner.y), outer.vector(inner.z), outer.point(inner.origin)};
 }
 
-// Returns the linear part over its largest entry, so that products of three entries stay in range.
+// Returns the linear part divided by its largest absolute entry, so that products of three entries cannot
+// overflow. Returns `a` if the linear part is 0.
 inline Affined scaled(const Affined& a) {
   const double largest =
       std::max({max_component(abs(a.x)), max_component(abs(a.y)), max_component(abs(a.z))});
   return largest > 0 ? Affined{a.x / largest, a.y / largest, a.z / largest, {}} : a;
 }
 
-// Returns the determinant with the largest entry scaled to 1. Negative if the map mirrors, 0 if it has no
-// inverse.
+// Returns the determinant of scaled(a): negative if the map mirrors, 0 if the map has no inverse.
 inline double scaled_determinant(const Affined& a) {
   const Affined s = scaled(a);
   return dot(s.x, cross(s.y, s.z));
 }
 
-// Transforms a surface normal without normalising it. Uses the inverse transpose, which is the cofactor
-// matrix over the determinant.
+// Transforms a surface normal without normalising it. Uses the cofactor matrix with the sign of the
+// determinant, which is a positive multiple of the inverse transpose.
 inline Vec3d transformed_normal(const Affined& a, const Vec3d& n) {
   const Affined s = scaled(a);
   const Vec3d turned = cross(s.y, s.z) * n.x + cross(s.z, s.x) * n.y + cross(s.x, s.y) * n.z;
@@ -65,7 +65,8 @@ inline Affined inverse(const Affined& a) {
   return inverse;
 }
 
-// Returns the largest factor by which the linear part scales a vector's largest coordinate.
+// Returns the largest factor by which the linear part can increase the largest absolute coordinate of a
+// vector.
 inline double stretch(const Affined& a) { return max_component(abs(a.x) + abs(a.y) + abs(a.z)); }
 
 // Returns the rotation by `degrees` about the unit vector `axis`, anticlockwise as seen from its tip

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-// Sine, cosine and tangent of an angle in degrees, in double precision. IEEE operations only: the same bits
-// on every machine, exact at multiples of 90 degrees, exactly periodic.
+// Sine, cosine and tangent of an angle in degrees, in double precision. Only IEEE operations are used, so
+// every machine returns the same bits. Results are exactly periodic, and exact at multiples of 90 degrees.
 namespace orrery {
 
 struct SineCosine {

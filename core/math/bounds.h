@@ -10,7 +10,7 @@
 
 namespace orrery {
 
-// Axis-aligned box. Empty by default; sides may be infinite.
+// Axis-aligned box. Empty by default. Sides may be infinite.
 template <class T>
 struct Bounds {
   Vec3<T> lo{Vec3<T>(std::numeric_limits<T>::infinity())};
@@ -60,8 +60,8 @@ inline std::array<Vec3<double>, 8> corners_of(const Boundsd& b) {
   return corners;
 }
 
-// Converts the box to another precision and pads each side by 4 ulp of its largest coordinate. A hit computed
-// in that precision and projected back onto its shape then lies inside.
+// Converts the box to precision T and pads each side by 4 epsilon times the largest absolute coordinate of
+// the box. The padded box contains every hit that is computed in T and projected back onto the shape.
 template <class T>
 [[gnu::always_inline]] inline Bounds<T> padded(const Boundsd& b) {
   const T pad = static_cast<T>(b.magnitude()) * std::numeric_limits<T>::epsilon() * 4;
@@ -71,16 +71,16 @@ template <class T>
   return grown;
 }
 
-// Rounding error of a primitive test, relative to the ray origin's largest coordinate. Box tests enlarge
-// boxes by as much.
+// Bound on the rounding error of a primitive test, relative to the largest absolute coordinate of the ray
+// origin. Box tests enlarge boxes by this amount.
 template <class T>
 inline constexpr T kRounding = 16 * std::numeric_limits<T>::epsilon();
 
 // Ray prepared for box tests.
 template <class N>
 struct BoxRay {
-  Vec3<N> above, below;  // origin moved up and down each axis by the rounding error of primitives in a box
-  Vec3<N> inverse;       // 1 / direction, infinite for components of 0
+  Vec3<N> above, below;  // origin plus and minus the rounding error of primitive tests, on each axis
+  Vec3<N> inverse;       // 1 / direction; infinite where a component is 0
 
   BoxRay(const Vec3<N>& origin, const Vec3<N>& direction)
       : inverse(N(ScalarOf<N>(1)) / direction.x, N(ScalarOf<N>(1)) / direction.y,
@@ -93,9 +93,9 @@ struct BoxRay {
 
 // Returns the lanes whose ray may enter the box at a distance in [0, t_max]. Conservative: a ray that touches
 // the box is never missed. The sign bit of the direction selects near and far planes. A NaN (0 * infinity, a
-// ray in the plane of a face) leaves the interval unchanged. The far side grows by 4 ulp (Ize, "Robust BVH
-// Ray Traversal", JCGT 2013). So does t_max, because a hit in the box may be as near as the current hit or,
-// by rounding, nearer.
+// ray in the plane of a face) leaves the interval unchanged. Far distances are multiplied by 1 + 4 epsilon
+// (Ize, "Robust BVH Ray Traversal", JCGT 2013). So is t_max, because a hit in the box may be as near as the
+// current hit or, after rounding, nearer.
 template <class N>
 [[gnu::always_inline]] inline MaskOf<N> enters(const BoxRay<N>& ray, const Vec3<N>& lo, const Vec3<N>& hi,
                                                const N& t_max) {

@@ -8,7 +8,7 @@
 
 namespace orrery {
 
-// Returns the lanes of a mask as bits, lane 0 lowest.
+// Returns the lanes of a mask as bits. Lane 0 is the lowest bit.
 template <class T, class Abi>
 [[gnu::always_inline]] inline unsigned bits_of(const stdx::simd_mask<T, Abi>& m) {
   if constexpr (stdx::simd_mask<T, Abi>::size() == 1) {
@@ -24,8 +24,8 @@ template <class T, class Abi>
   }
 }
 
-// Stores the lanes selected by `bits` to consecutive elements from `to`, in order. May write a whole
-// register's width: `to` needs that much room.
+// Stores the lanes selected by `bits` in consecutive elements of `to`, in lane order. REQUIRES: `to` has
+// space for all lanes of `v`, because the elements after the selected ones may be overwritten.
 template <class V, class T>
 [[gnu::always_inline]] inline void compress_store(const V& v, unsigned bits, T* to) {
 #if defined(__AVX512F__)

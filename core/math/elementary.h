@@ -2,9 +2,10 @@
 
 #include "core/math/lanes.h"
 
-// Elementary functions of scalars and lanes. IEEE operations only, so every machine and vector width gives
-// the same bits, unlike libm, which selects variants by processor. The logarithm uses the atanh series (|s|
-// <= 0.172), 2^f the Taylor series (|f| <= 1/2). Both are long enough for half an ulp of the type.
+// Elementary functions of scalars and lanes. Only IEEE operations are used, so every machine and vector width
+// returns the same bits. libm does not, because it selects variants by processor. The logarithm uses the
+// atanh series (|s| <= 0.172), 2^f the Taylor series (|f| <= 1/2). Both series are long enough for an error
+// below half an ulp of the type.
 namespace orrery {
 
 namespace detail {
@@ -55,7 +56,8 @@ template <class N>
 
 }  // namespace detail
 
-// Computes log2(x). REQUIRES: x is positive and normal; other values give an arbitrary finite number.
+// Returns log2(x). REQUIRES: x is positive and normal. The result for other arguments is an arbitrary finite
+// number.
 template <class N>
 [[gnu::always_inline]] inline N log2_normal(const N& x) {
   using T = ScalarOf<N>;
@@ -73,7 +75,8 @@ template <class N>
   return detail::convert<N>(exponent) + s * series * kTwoOverLn2;
 }
 
-// Computes 2^y; 0 if y is below the smallest normal exponent. REQUIRES: y is below the largest exponent.
+// Returns 2^y, or 0 if y is below the smallest normal exponent. REQUIRES: y is at most the largest exponent,
+// 127 for float and 1023 for double.
 template <class N>
 [[gnu::always_inline]] inline N exp2_flushed(const N& y) {
   using T = ScalarOf<N>;
@@ -94,8 +97,8 @@ template <class N>
   return select(y < N(kLowest), N(T(0)), series * std::bit_cast<N>(scale));
 }
 
-// Computes x^y for x in [0, 1] and y >= 0, with 0^0 = 1. Flushes results below the smallest normal number to
-// 0. The relative error is at most 2 y |log2 x| ulp: 2.5e-5 (float), 4e-13 (double) for normal results.
+// Returns x^y for x in [0, 1] and y >= 0, with 0^0 = 1. Flushes results below the smallest normal number to
+// 0. The relative error is at most 2 y |log2 x| ulp, hence at most 2.5e-5 (float) or 4e-13 (double).
 template <class N>
 [[gnu::always_inline]] inline N pow_unit(const N& x, const N& y) {
   using T = ScalarOf<N>;
@@ -105,7 +108,8 @@ template <class N>
   return select(vanishing, select(y > N(T(0)), N(T(0)), N(T(1))), power);
 }
 
-// Sine and cosine of an angle in turns, |turns| <= 2^20: within 2 ulp of 1, exact at quarter turns.
+// Sine and cosine of an angle in turns. The absolute error is at most 2 epsilon, and 0 at quarter turns.
+// REQUIRES: |turns| <= 2^20.
 template <class N>
 struct SineCosineOf {
   N sine, cosine;
@@ -134,9 +138,9 @@ template <class N>
   return {select(sine_negative, N(-s), s), select(cosine_negative, N(-c), c)};
 }
 
-// Returns the angle of the direction (x, y) from the x axis toward the y axis, in turns in [-1/2, 1/2]; 0 for
-// (0, 0). Halves the angle three times by atan t = 2 atan(t / (1 + sqrt(1 + t^2))), then uses Taylor's
-// series.
+// Returns the angle of the direction (x, y) from the x axis toward the y axis, in turns in [-1/2, 1/2].
+// Returns 0 for (0, 0). Halves the angle three times by atan t = 2 atan(t / (1 + sqrt(1 + t^2))), then uses
+// Taylor's series.
 template <class N>
 [[gnu::always_inline]] inline N direction_turns(const N& x, const N& y) {
   using T = ScalarOf<N>;
@@ -160,7 +164,7 @@ template <class N>
   return select(y < zero, N(-turns), turns);
 }
 
-// Returns direction_turns() mapped to [0, 1].
+// Returns direction_turns() plus 1 if it is negative: a value in [0, 1].
 template <class N>
 [[gnu::always_inline]] inline N positive_turns(const N& x, const N& y) {
   using T = ScalarOf<N>;

@@ -2,7 +2,7 @@
 
 namespace orrery {
 
-// Interval in which the shutter is open, in seconds. An instant if it closes when it opens.
+// Time interval in which the shutter is open, in seconds. The exposure is an instant if both times are equal.
 struct Exposure {
   double opens = 0, closes = 0;
 

@@ -9,7 +9,7 @@ namespace orrery {
 
 namespace detail {
 
-// b - a and its rounding error (Knuth's exact sum).
+// The exact difference b - a as a rounded value `high` plus its rounding error `low` (Knuth's TwoSum).
 struct ExactDifference {
   double high, low;
   ExactDifference(double b, double a) : high(b - a) {
@@ -20,8 +20,9 @@ struct ExactDifference {
 
 }  // namespace detail
 
-// Returns a triangle's unit normal by the right-hand rule, or 0 if its area is 0. Accurate for thin triangles
-// with two long, nearly parallel sides: the side vectors are exact, their products nearly exact.
+// Returns a triangle's unit normal by the right-hand rule, or 0 if its area is 0. Accurate even for thin
+// triangles with two long, nearly parallel sides, because the side vectors are exact and their products
+// nearly exact.
 inline Vec3d face_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   using Difference = detail::ExactDifference;
   const std::array<Difference, 3> e{Difference(b.x, a.x), Difference(b.y, a.y), Difference(b.z, a.z)};

@@ -8,9 +8,9 @@
 // Hemisphere sampling and orthonormal bases.
 namespace orrery {
 
-// Two unit vectors perpendicular to the unit vector n and to each other. Continuous except at n.z = -0 (Duff,
-// Burgess, Christensen, Hery, Kensler, Liani, Villemin, "Building an Orthonormal Basis, Revisited", JCGT
-// 2017).
+// Two unit vectors perpendicular to the unit vector n and to each other. Discontinuous only where n.z changes
+// sign (Duff, Burgess, Christensen, Hery, Kensler, Liani, Villemin, "Building an Orthonormal Basis,
+// Revisited", JCGT 2017).
 template <class N>
 struct Tangents {
   Vec3<N> first, second;
@@ -24,15 +24,15 @@ template <class N>
   return {{one + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}};
 }
 
-// Returns the density of cosine_direction() per solid angle.
+// Returns the density of cosine_direction() per solid angle, for a direction with this cosine to the normal.
 template <class N>
 [[gnu::always_inline]] inline N cosine_pdf(const N& cosine) {
   using T = ScalarOf<N>;
   return cosine * (T(1) / std::numbers::pi_v<T>);
 }
 
-// Samples a direction about `normal` in proportion to its cosine, by u and v in [0, 1). Projects a uniform
-// point of the unit disk onto the hemisphere (Malley).
+// Samples a direction about `normal` with density proportional to its cosine, from u and v in [0, 1).
+// Projects a uniform point of the unit disk onto the hemisphere (Malley's method).
 template <class N>
 [[gnu::always_inline]] inline Vec3<N> cosine_direction(const Vec3<N>& normal, const N& u, const N& v) {
   using std::sqrt;

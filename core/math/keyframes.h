@@ -7,8 +7,8 @@
 
 namespace orrery {
 
-// Keyframed value. Between two keys it is mix(before, after, share), 0 < share < 1; outside of them it is
-// constant.
+// Keyframed value. Between two keys, the value is mix(before, after, share) with 0 < share < 1. Before the
+// first key and after the last key, it is constant.
 template <class V>
 struct Keyframes {
   std::vector<double> times;  // seconds, ascending
@@ -22,7 +22,7 @@ struct Keyframes {
                    [](const V& before, const V& after, double share) { return mix(before, after, share); });
   }
 
-  // Returns the value at `time` with `mix_two` in place of mix(). REQUIRES: !empty().
+  // Returns the value at `time`, interpolated by `mix_two` instead of mix(). REQUIRES: !empty().
   template <class Mix>
   V between(double time, const Mix& mix_two) const {
     const auto next =
@@ -33,7 +33,8 @@ struct Keyframes {
     return mix_two(values[last], values[next], (time - times[last]) / (times[next] - times[last]));
   }
 
-  // Returns the times that divide an exposure into motion segments: its start, the keys within, and its end.
+  // Returns the times that divide an exposure into motion segments: its start, the keys inside it, and its
+  // end.
   std::vector<double> moments(const Exposure& exposure) const {
     std::vector<double> all{exposure.opens};
     for (const double time : times)

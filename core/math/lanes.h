@@ -10,8 +10,8 @@
 
 #include "core/math/registers.h"
 
-// SIMD lanes: numbers of one type that one formula processes at once. Formulas are templates over a number
-// type N, either a scalar or lanes. This file has the few operations that differ.
+// SIMD lanes: several numbers of one type that are processed at once. Formulas are templates over a number
+// type N, which is either a scalar or lanes. This file contains the operations that differ between the two.
 namespace orrery {
 
 namespace stdx = std::experimental;
@@ -29,8 +29,8 @@ struct LanesOf<long double> {  // for reference results: one lane
 template <class T>
 using Lanes = typename LanesOf<T>::type;
 
-// Number of primitives per block, which one ray tests at once. At most half the widest register, because more
-// memory per node or leaf costs more than a wider register saves.
+// Number of primitives per block. A single ray is tested with a whole block at once. At most 8, because
+// larger nodes and leaves cost more than a wider register saves.
 template <class T>
 inline constexpr int kBlock = std::max(1, std::min(static_cast<int>(Lanes<T>::size()), 8));
 template <class T>
@@ -63,7 +63,7 @@ struct NumberTraits<stdx::simd<T, Abi>> {
   using Scalar = T;
   using Mask = stdx::simd_mask<T, Abi>;
 };
-// Scalar behind a number type, and the type of its comparisons.
+// Scalar type of a number type, and the result type of its comparisons.
 template <class N>
 using ScalarOf = typename NumberTraits<N>::Scalar;
 template <class N>
@@ -105,8 +105,8 @@ template <class T>
   return Lanes<T>(from, stdx::vector_aligned);
 }
 
-// Return the smaller and the larger number. They return `accumulator` if either number is NaN or both are
-// equal, -0 and +0 included; a NaN `x` therefore never replaces it.
+// min_first() returns the smaller number, max_first() the larger. Both return `accumulator` if the numbers
+// are equal (-0 equals +0) or if either is NaN. A NaN `x` therefore never replaces the accumulator.
 template <class N>
 [[gnu::always_inline]] inline N min_first(const N& accumulator, const N& x) {
   if constexpr (registers::kFits<ScalarOf<N>, N>) {
@@ -126,8 +126,8 @@ template <class N>
   }
 }
 
-// Computes a * b - c, rounded once with FMA and twice without. Use it only for bounds padded for either
-// result.
+// Returns a * b - c, rounded once with FMA and twice without. Use it only in code that requires FMA, or for
+// bounds whose padding covers both results.
 template <class N>
 [[gnu::always_inline]] inline N multiply_subtract(const N& a, const N& b, const N& c) {
 #if defined(__FMA__)

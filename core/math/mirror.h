@@ -4,8 +4,9 @@
 
 namespace orrery {
 
-// Reflects `direction` about the shading normal, or about the geometric normal if the result would point into
-// the surface. All vectors are unit; both normals are on the side that `direction` comes from.
+// Reflects `direction` about the shading normal `normal`, or about the geometric normal `true_normal` if the
+// result would point into the surface. REQUIRES: all vectors are unit, and both normals point to the side
+// that `direction` comes from.
 template <class N>
 [[gnu::always_inline]] inline Vec3<N> mirrored(const Vec3<N>& direction, const Vec3<N>& normal,
                                                const Vec3<N>& true_normal) {

@@ -7,7 +7,7 @@
 
 namespace orrery {
 
-// Motion segments of an exposure and the assignment of lanes to them by time. Times are shares of the
+// Motion segments of an exposure. Assigns lanes to segments by their times, which are fractions of the
 // exposure in [0, 1).
 template <class T>
 class MotionSegments {
@@ -20,8 +20,8 @@ class MotionSegments {
     for (const double moment : moments) moments_.push_back(static_cast<T>((moment - opens) / length));
   }
 
-  // Calls visit(lanes, moment, share) for each segment that contains some of the times. `moment` is the index
-  // of its start; `share` is the position within it, from 0 to 1.
+  // Calls visit(lanes, moment, share) for each segment that contains the times of some lanes. `moment` is the
+  // index of the start of the segment. `share` is the position within the segment, from 0 to 1.
   template <class Visit>
   [[gnu::always_inline]] void for_each(const N& time, const Visit& visit) const {
     MaskOf<N> open(true);

@@ -4,12 +4,13 @@
 
 #include "core/math/lanes.h"
 
-// Products with known rounding errors: the same bits at every instruction level, with or without FMA.
+// Products with known rounding errors. Results have the same bits at every instruction level, with or without
+// FMA.
 namespace orrery {
 
 namespace detail {
 
-// Returns the high half of a number: 26 bits of a double.
+// Returns the upper 26 bits of the mantissa of `x` (Veltkamp's splitting).
 inline double high_half(double x) {
   const double scaled = 134217729 * x;  // 2^27 + 1
   return scaled - (scaled - x);
@@ -42,8 +43,8 @@ template <class T, class Abi>
   return N([&](auto i) { return product_error(a[i], b[i], p[i]); });
 }
 
-// Computes a * b - c * d within two roundings of the exact value. The result is 0 or has the exact sign.
-// Exchanging the products negates it exactly.
+// Returns a * b - c * d within two roundings of the exact value. The result is 0 or has the sign of the exact
+// value. Exchanging the two products negates the result exactly.
 template <class N>
 [[gnu::always_inline]] inline N difference_of_products(const N& a, const N& b, const N& c, const N& d) {
   const N ab = a * b, cd = c * d;

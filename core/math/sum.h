@@ -4,9 +4,9 @@
 
 namespace orrery {
 
-// Compensated sum, independent of the order of its terms. Rounding errors are summed separately (Knuth, "The
-// Art of Computer Programming", volume 2, 4.2.2, theorem B). Only a last bit within 1e-16 of a tie may
-// differ.
+// Compensated sum. Rounding errors are summed separately (Knuth, "The Art of Computer Programming", volume 2,
+// 4.2.2, theorem B). The order of the terms can change only the last bit, and only if the exact sum is almost
+// half way between two doubles.
 class Sum {
  public:
   Sum(double first = 0) : sum_(first) {}

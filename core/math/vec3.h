@@ -10,7 +10,7 @@
 namespace orrery {
 
 // Vector of three components of one number type: a scalar (float, double, long double) or lanes. Used for
-// points, directions and linear colours; the variable's name states which.
+// points, directions and linear colours. The name of the variable states which.
 template <class N>
 struct Vec3 {
   N x{}, y{}, z{};
@@ -29,10 +29,10 @@ struct Vec3 {
   bool operator==(const Vec3&) const = default;
 
  private:
-  // Compiles to one indexed load without a branch: traversals select the axis per ray.
+  // Compiles to one indexed load without a branch, because traversals select the axis per ray.
   template <class V>
   [[gnu::always_inline]] static constexpr auto& at(V& v, std::size_t axis) {
-    static_assert(sizeof(Vec3) == 3 * sizeof(N), "the components follow each other in memory");
+    static_assert(sizeof(Vec3) == 3 * sizeof(N), "the components are contiguous in memory");
     assert(axis < 3);
     if (std::is_constant_evaluated()) return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
     return (&v.x)[axis];
@@ -116,7 +116,7 @@ template <class N>
 }
 
 // Returns the unit vector along a scalar vector of any finite magnitude, or 0 for 0. Scales the largest
-// component to 1 first, so that neither 1e-200 nor 1e200 leaves the range.
+// component to 1 first, so that the squares of 1e-200 and 1e200 neither underflow nor overflow.
 template <class N>
 requires std::is_floating_point_v<N>
 [[gnu::always_inline]] inline Vec3<N> safe_normalize(const Vec3<N>& a) {

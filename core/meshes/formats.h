@@ -12,15 +12,16 @@
 // Declarations shared by the readers of mesh formats.
 namespace orrery {
 
-// Reads a whole file of one format, without a byte order mark. Normals are returned as stored in the file.
-// Throws as read_mesh().
+// Reads a file of one format. `bytes` is the whole file without a byte order mark. Normals are returned as
+// stored in the file. Throws the exceptions of read_mesh().
 TriangleMesh read_obj(std::string_view bytes, const MeshLimits& limits);
 TriangleMesh read_ply(std::string_view bytes, const MeshLimits& limits);
 TriangleMesh read_stl(std::string_view bytes, const MeshLimits& limits);
 TriangleMesh read_gltf(std::string_view bytes, const MeshLimits& limits);
 
-// Returns the number of triangles of a binary STL, which determines the file's size, or 0 for any other file.
-// Text is never taken for one: its bytes there would mean at least 150 million triangles.
+// Returns the number of triangles of a binary STL, or 0 for any other file. The count in the header must
+// match the file size. A text file cannot match, because its bytes would encode a count of at least 150
+// million triangles.
 std::size_t binary_stl_triangles(std::string_view bytes);
 
 // Returns true if `word` equals the lower-case `keyword`, ignoring case.
@@ -45,7 +46,7 @@ inline bool is_finite(const Vec3d& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-// Returns the shortest decimals that convert back to the same number.
+// Returns the shortest decimal that converts back to the same number.
 inline std::string text_of(double x) {
   std::array<char, 32> text;
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), x).ptr};
@@ -59,10 +60,10 @@ inline bool is_position(const Vec3d& v) {
   const auto in_range = [](double x) { return std::abs(x) <= kMaxMeshCoordinate; };
   return in_range(v.x) && in_range(v.y) && in_range(v.z);
 }
-// Returns the error text for a position that is out of range. `place` is appended to its value.
+// Returns the error text for a position that is out of range. `place` follows the value in the text.
 inline std::string position_problem(const Vec3d& got, const std::string& place = "") {
-  return "coordinates must be at most " + text_of(kMaxMeshCoordinate) + " in magnitude (got " + text_of(got) +
-         place + ")";
+  return "coordinates must be at most " + text_of(kMaxMeshCoordinate) + " m in magnitude (got " +
+         text_of(got) + place + ")";
 }
 
 }  // namespace orrery

@@ -11,10 +11,10 @@
 namespace orrery {
 namespace {
 
-// Limit on placed primitives, because many nodes may reference one mesh.
+// Maximum number of placed primitives. A small file can place many, because nodes may share a mesh.
 constexpr std::size_t kMaxPlaced = 250'000;
 
-// Returns true if the extension does not change geometry, or is supported (quantized attributes).
+// Returns true if the extension does not change geometry, or if it is supported (quantized attributes).
 bool is_harmless(std::string_view extension) {
   constexpr std::string_view kPrefixes[] = {"KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_",
                                             "KHR_mesh_quantization"};
@@ -40,8 +40,8 @@ class SceneReader {
   }
 
  private:
-  // Returns the roots of the scene to show. If the file names no scene, returns every node that is not a
-  // child.
+  // Returns the root nodes of the default scene. If the file has no default scene, returns every node that is
+  // not a child.
   std::vector<std::size_t> roots(const GltfValue& nodes) const {
     std::vector<std::size_t> found;
     if (const auto scene = file_.root().find("scene")) {
@@ -65,8 +65,8 @@ class SceneReader {
     for (std::size_t i = 0; children && i < children->size(); ++i) visit(children->item(i).integer());
   }
 
-  // Places the nodes depth first, in file order. Rejects nodes that are reached twice, by a cycle or by two
-  // parents.
+  // Places the nodes depth first, in file order. Rejects a node that is reached twice, through a cycle or
+  // from two parents.
   void place(const GltfValue& nodes, const std::vector<std::size_t>& roots) {
     struct Visit {
       std::size_t node;
@@ -166,9 +166,8 @@ class SceneReader {
       interruption_point(i);
       const double index = numbers.value(i, 0);
       if (!(index >= 0 && index < count && index == std::floor(index)))
-        user.fail("indices must be integers of at least 0 and < " +
-                  std::to_string(mesh_.positions.size() - first) + " (got " + text_of(index) + " at entry " +
-                  std::to_string(i) + ")");
+        user.fail("indices must be integers >= 0 and < " + std::to_string(mesh_.positions.size() - first) +
+                  " (got " + text_of(index) + " at entry " + std::to_string(i) + ")");
       indices.push_back(static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(index));
     }
     return indices;
@@ -178,14 +177,14 @@ class SceneReader {
                      bool mirrored) {
     const std::size_t n = order.size();
     if (n < 3 || (mode == 4 && n % 3 != 0))
-      primitive.fail("must have at least 3 vertices, and a multiple of 3 for separate triangles (got " +
+      primitive.fail("must have at least 3 vertices, and a multiple of 3 in mode 4 (got " +
                      std::to_string(n) + ")");
     const std::size_t count = mode == 4 ? n / 3 : n - 2;
     check_triangles(mesh_.triangles.size() + count, limits_);
     for (std::size_t i = 0; i < count; ++i) {
       interruption_point(i);
       std::array<std::size_t, 3> corners = {3 * i, 3 * i + 1, 3 * i + 2};
-      if (mode == 5) corners = {i, i + 1 + i % 2, i + 2 - i % 2};  // strips alternate their orientation
+      if (mode == 5) corners = {i, i + 1 + i % 2, i + 2 - i % 2};  // strips alternate orientation
       if (mode == 6) corners = {i + 1, i + 2, 0};
       if (mirrored) std::swap(corners[1], corners[2]);
       mesh_.triangles.push_back({order[corners[0]], order[corners[1]], order[corners[2]]});
@@ -195,7 +194,7 @@ class SceneReader {
   GltfFile file_;
   const MeshLimits& limits_;
   TriangleMesh mesh_;
-  bool all_normals_ = true, all_uvs_ = true;  // for the primitives read so far
+  bool all_normals_ = true, all_uvs_ = true;  // true if all primitives read so far have them
   std::size_t placed_ = 0;
 };
 

@@ -43,22 +43,22 @@ constexpr ComponentType kComponentTypes[] = {{5120, 1, load<std::int8_t, false>,
 ComponentType component_type(const GltfValue& code) {
   for (const ComponentType& type : kComponentTypes)
     if (type.code == code.integer()) return type;
-  code.fail("must be a component type from 5120 to 5126 other than 5124 (got " +
-            std::to_string(code.integer()) + ")");
+  code.fail("must be a component type: 5120 to 5123, 5125 or 5126 (got " + std::to_string(code.integer()) +
+            ")");
 }
 
 struct Chunks {
   std::string_view json, binary;
 };
 
-// Splits a GLB file: a header (magic, version, length) and chunks (length, type, bytes), JSON first. Each
-// number has 4 bytes.
+// Splits a GLB file into chunks. The file has a header (magic, version, length) and chunks (length, type,
+// bytes), the JSON chunk first. Each number has 4 bytes.
 Chunks split_glb(std::string_view bytes) {
   constexpr std::uint32_t kJson = 0x4e4f534a, kBinary = 0x004e4942;
   const auto word = [&](std::size_t at) { return little_endian<std::uint32_t>(bytes.data() + at); };
   if (bytes.size() < 12)
     throw InputError(
-        "", "file must begin with a GLB header of 12 bytes (got " + std::to_string(bytes.size()) + ")");
+        "", "file must begin with a GLB header of 12 bytes (got " + std::to_string(bytes.size()) + " bytes)");
   if (word(4) != 2) fail_at("byte 4", "must be GLB version 2 (got " + std::to_string(word(4)) + ")");
   if (word(8) > bytes.size())
     fail_at("byte 8", "GLB length must be at most the file size, " + std::to_string(bytes.size()) +
@@ -76,7 +76,7 @@ Chunks split_glb(std::string_view bytes) {
     if (at > 12 && word(at + 4) == kBinary && chunks.binary.empty()) chunks.binary = chunk;
     at += 8 + chunk.size();
   }
-  if (chunks.json.empty()) fail_at("byte 12", "must be a GLB chunk \"JSON\" with content (got none)");
+  if (chunks.json.empty()) fail_at("byte 12", "must be a non-empty GLB chunk of type \"JSON\" (got none)");
   return chunks;
 }
 
@@ -94,7 +94,7 @@ std::vector<char> decode_base64(std::string_view text, const GltfValue& place) {
   while (text.ends_with('=')) text.remove_suffix(1);
   if (text.size() % 4 == 1)
     place.fail("must be base64 (got " + std::to_string(text.size()) +
-               " digits, of which the last is incomplete)");
+               " digits, one more than a multiple of 4)");
   const auto digits = base64_digits();
   std::vector<char> bytes;
   bytes.reserve(text.size() / 4 * 3 + 2);
@@ -134,8 +134,8 @@ std::string_view GltfFile::buffer(const GltfValue& user) {
     constexpr std::string_view kMark = ";base64,";
     const std::size_t comma = text.find(',');
     if (!text.starts_with("data:") || comma == text.npos || !text.substr(0, comma + 1).ends_with(kMark))
-      uri->fail("must be a data: URI in base64, because other files are not read (got " + excerpt(text) +
-                ")");
+      uri->fail("must be a data: URI in base64, because external files are not supported (got " +
+                excerpt(text) + ")");
     entry.own = decode_base64(std::string_view(text).substr(comma + 1), *uri);
     entry.bytes = {entry.own.data(), entry.own.size()};
   } else {
@@ -144,7 +144,7 @@ std::string_view GltfFile::buffer(const GltfValue& user) {
   }
   const GltfValue length = buffer.at("byteLength");
   if (length.integer() > entry.bytes.size())
-    length.fail("must be at most " + std::to_string(entry.bytes.size()) + ", the bytes of the buffer (got " +
+    length.fail("must be at most " + std::to_string(entry.bytes.size()) + ", the buffer size in bytes (got " +
                 std::to_string(length.integer()) + ")");
   entry.bytes = entry.bytes.substr(0, length.integer());
   entry.decoded = true;
@@ -157,14 +157,14 @@ std::string_view GltfFile::view(const GltfValue& user) {
   const std::uint64_t offset = integer_or(view, "byteOffset", 0), length = view.at("byteLength").integer();
   if (offset > bytes.size() || length > bytes.size() - offset)
     view.fail("byteOffset + byteLength must be at most " + std::to_string(bytes.size()) +
-              ", the bytes of the buffer (got " + std::to_string(offset) + " + " + std::to_string(length) +
+              ", the buffer size in bytes (got " + std::to_string(offset) + " + " + std::to_string(length) +
               ")");
   return bytes.substr(offset, length);
 }
 
 GltfNumbers GltfFile::accessor(const GltfValue& user, std::string_view type) {
   const GltfValue accessor = root().at("accessors").item(user.integer());
-  if (accessor.find("sparse")) accessor.fail("must be an accessor that is not sparse (got a sparse one)");
+  if (accessor.find("sparse")) accessor.fail("sparse accessors are not supported");
   const GltfValue stated = accessor.at("type");
   if (stated.text() != type)
     stated.fail("must be " + excerpt(type) + " (got " + excerpt(stated.text()) + ")");
@@ -187,9 +187,9 @@ GltfNumbers GltfFile::accessor(const GltfValue& user, std::string_view type) {
   if (count == 0 || offset > bytes.size() || element > bytes.size() - offset ||
       count - 1 > (bytes.size() - offset - element) / numbers.stride)
     accessor.fail("must have at least 1 element of " + std::to_string(element) + " bytes, " +
-                  std::to_string(numbers.stride) + " apart, within the " + std::to_string(bytes.size()) +
-                  " bytes of the buffer view (got " + std::to_string(count) + " from byte " +
-                  std::to_string(offset) + ")");
+                  std::to_string(numbers.stride) + " bytes apart, within the " +
+                  std::to_string(bytes.size()) + " bytes of the buffer view (got " + std::to_string(count) +
+                  " elements from byte " + std::to_string(offset) + ")");
   numbers.count = count;
   numbers.data = bytes.data() + offset;
   return numbers;

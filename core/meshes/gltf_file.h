@@ -6,34 +6,35 @@
 
 namespace orrery {
 
-// Numbers of an accessor: `count` vectors of `components` each. Must not outlive its GltfFile.
+// Numbers of an accessor: `count` vectors of `components` numbers. `stride` and `component_bytes` are in
+// bytes. Must not outlive its GltfFile.
 struct GltfNumbers {
   const char* data;
   std::size_t count, stride;
   std::size_t components, component_bytes;
-  double (*load)(const char*);  // loads a double, normalized if the accessor is
+  double (*load)(const char*);  // loads one number, and normalizes it if the accessor is normalized
 
   double value(std::size_t i, std::size_t component) const {
     return load(data + i * stride + component * component_bytes);
   }
 };
 
-// A .glb or .gltf file with its buffers. Never reads other files; external buffers are rejected. Throws
-// InputError and Cancelled. Not thread-safe: accessor() decodes buffers.
+// A .glb or .gltf file with its buffers. Never reads other files. Rejects external buffers. Throws InputError
+// and Cancelled. Not thread-safe: accessor() decodes buffers.
 class GltfFile {
  public:
   explicit GltfFile(std::string_view bytes);
 
   GltfValue root() const { return {document_, ""}; }
 
-  // Returns the accessor with index `user`, after checking that all its elements lie in the buffer. Throws
-  // InputError if it is not of `type` ("SCALAR", "VEC2", "VEC3"). Errors in the index are reported at `user`.
+  // Returns the numbers of the accessor with index `user`. Throws InputError if an element is outside the
+  // buffer view or the type is not `type` ("SCALAR", "VEC2" or "VEC3"). Reports an invalid index at `user`.
   GltfNumbers accessor(const GltfValue& user, std::string_view type);
 
  private:
   struct Buffer {
     bool decoded = false;
-    std::vector<char> own;  // decoded data: URI
+    std::vector<char> own;  // decoded bytes of a data: URI
     std::string_view bytes;
   };
 
@@ -42,7 +43,7 @@ class GltfFile {
   std::string_view buffer(const GltfValue& user);
 
   nlohmann::json document_;
-  std::string_view binary_;  // chunk BIN of a .glb
+  std::string_view binary_;  // BIN chunk of a .glb file
   std::vector<Buffer> buffers_;
 };
 

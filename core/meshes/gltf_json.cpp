@@ -11,16 +11,15 @@
 namespace orrery {
 namespace {
 
-constexpr std::size_t kMaxDepth = 32;          // geometry needs 6
-constexpr std::size_t kMaxValues = 1'000'000;  // 16 to 80 bytes of memory each, 2 bytes of text or more
+constexpr std::size_t kMaxDepth = 32;          // levels; geometry needs 6
+constexpr std::size_t kMaxValues = 1'000'000;  // 16 to 80 bytes of memory and at least 2 bytes of text each
 
 constexpr std::string_view kTopKeys[] = {"asset",       "scene",   "scenes",
                                          "nodes",       "meshes",  "accessors",
                                          "bufferViews", "buffers", "extensionsRequired"};
 
-// Builds the document from parser events. Skips the values that geometry does not need. nlohmann's parser
-// with a callback takes quadratic time instead: it searches a container for discarded values after each
-// element.
+// Builds the document from parser events. Skips the values that geometry does not need. nlohmann's callback
+// parser would take quadratic time, because it searches a container for discarded values after each element.
 class GltfBuilder final : public nlohmann::json_sax<nlohmann::json> {
  public:
   nlohmann::json& document() { return document_; }
@@ -52,7 +51,7 @@ class GltfBuilder final : public nlohmann::json_sax<nlohmann::json> {
   }
 
  private:
-  // Adds a value to the open container. Returns true.
+  // Adds a value to the innermost open container. Returns true, so that parsing continues.
   bool add(nlohmann::json value) {
     count_value();
     if (skipped_ == 0 && !std::exchange(skips_next_, false)) place(std::move(value));
@@ -96,8 +95,8 @@ class GltfBuilder final : public nlohmann::json_sax<nlohmann::json> {
   nlohmann::json document_;
   std::vector<nlohmann::json*> open_;  // containers from the root to the innermost
   std::string key_;                    // key of the next value
-  bool skips_next_ = false;            // the next value is not needed
-  std::size_t skipped_ = 0;            // open containers that are not needed
+  bool skips_next_ = false;            // the next value is skipped
+  std::size_t skipped_ = 0;            // number of open containers that are skipped
   std::size_t values_ = 0, error_position_ = 0;
 };
 
@@ -165,7 +164,7 @@ nlohmann::json parse_gltf(std::string_view text) {
   const bool complete = nlohmann::json::sax_parse(text.begin(), text.end(), &builder);
   if (!complete)
     throw InputError("", "JSON syntax error at byte " + std::to_string(builder.error_position()));
-  if (!builder.document().is_object()) throw InputError("", "must be a JSON object");
+  if (!builder.document().is_object()) throw InputError("", "document must be a JSON object");
   return std::move(builder.document());
 }
 

@@ -8,19 +8,20 @@
 
 namespace orrery {
 
-// Value of a glTF document with its path, so that errors name the place. Must not outlive the document.
+// Value of a glTF document, with its path for error messages. Must not outlive the document. The functions
+// throw InputError if the value has another type.
 class GltfValue {
  public:
   GltfValue(const nlohmann::json& value, std::string path) : value_(&value), path_(std::move(path)) {}
 
-  // Returns member `key` of this object. If it is missing, find() returns nullopt and at() throws.
+  // Returns member `key` of this object. If the member is missing, find() returns nullopt and at() throws.
   std::optional<GltfValue> find(const char* key) const;
   GltfValue at(const char* key) const;
   // Returns the number of entries of this array.
   std::size_t size() const;
   GltfValue item(std::size_t i) const;  // throws if i >= size()
 
-  std::uint64_t integer() const;  // at least 0
+  std::uint64_t integer() const;  // throws if negative
   double number() const;
   bool flag() const;
   const std::string& text() const;
@@ -35,11 +36,11 @@ class GltfValue {
   std::string path_;
 };
 
-// Returns the integer `key` of an object, or `fallback` if it is missing.
+// Returns the integer at `key` of an object, or `fallback` if the key is missing.
 std::uint64_t integer_or(const GltfValue& object, const char* key, std::uint64_t fallback);
 
 // Parses the parts of a glTF document that geometry needs, without extras and extensions. Throws InputError
-// if the text is not a JSON object, or exceeds the limits on depth and number of values. Throws Cancelled.
+// if the text is not a JSON object, or has more than 32 levels or 1,000,000 values. Throws Cancelled.
 nlohmann::json parse_gltf(std::string_view text);
 
 }  // namespace orrery

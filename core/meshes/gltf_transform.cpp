@@ -22,12 +22,12 @@ Vec3d three_or(const GltfValue& node, const char* key, const Vec3d& fallback) {
   return {n[0], n[1], n[2]};
 }
 
-// Returns the rotation of a quaternion (x, y, z, w). Its length need not be 1. Throws InputError if it is 0.
+// Returns the rotation by a quaternion (x, y, z, w) of any length. Throws InputError if the quaternion is 0.
 Affined rotation_of(const GltfValue& value) {
   auto q = numbers_of<4>(value);
   double largest = 0;
   for (const double part : q) largest = std::max(largest, std::abs(part));
-  if (!(largest > 0)) value.fail("must be a quaternion other than 0 (got 0)");
+  if (!(largest > 0)) value.fail("must be a non-zero quaternion (got 0)");
   double square = 0;
   for (double& part : q) square += (part / largest) * (part / largest);
   for (double& part : q) part = part / largest / std::sqrt(square);

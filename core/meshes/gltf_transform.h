@@ -6,7 +6,7 @@
 namespace orrery {
 
 // Returns the transform from a node to its parent: its matrix, or translation * rotation * scale. Throws
-// InputError if it is invalid.
+// InputError if one of these is invalid.
 Affined transform_of(const GltfValue& node);
 
 }  // namespace orrery

@@ -11,21 +11,21 @@
 
 namespace orrery {
 
-// Hash table from the content of list entries to their numbers 0, 1, 2, ... The list itself is stored
-// elsewhere. Uses open addressing, at most half full. Entry numbers do not depend on the hash, which has a
-// random key, so that a crafted file cannot force collisions. Not thread-safe. find_or_add() throws
-// Cancelled.
+// Hash table that maps the contents of list entries to their indices 0, 1, 2, ... The caller stores the list.
+// Uses open addressing with a load factor of at most 1/2. The hash has a random key, so that a crafted file
+// cannot force collisions. Indices do not depend on the key. Not thread-safe. find_or_add() throws Cancelled.
 class IndexTable {
  public:
-  // Returns equal hashes for equal words.
+  // Returns the hash of `words`, which differs between tables.
   std::uint32_t hash(std::span<const std::uint64_t> words) const {
     std::uint64_t h = key_;
     for (const std::uint64_t word : words) h = mix(h ^ word);
     return static_cast<std::uint32_t>(h);
   }
 
-  // Returns the entry e with this hash and same(e). If there is none, adds and returns `size`; the caller
-  // must append the entry to the list. REQUIRES: `size` is the number of entries so far, below 2^31.
+  // Returns the index i of the entry with this hash for which same(i) is true. If no entry matches, adds and
+  // returns `size`, and the caller must append the entry to the list. REQUIRES: `size` is the current number
+  // of entries, below 2^31.
   template <class Same>
   std::uint32_t find_or_add(std::uint32_t hash, std::size_t size, const Same& same) {
     interruption_point();
@@ -45,7 +45,8 @@ class IndexTable {
   };
   __extension__ using Wide = unsigned __int128;
 
-  // Combines both halves of the product with a secret factor (the mixing step of wyhash, Wang Yi).
+  // Multiplies by a secret factor and combines both halves of the product (the mixing step of wyhash, Wang
+  // Yi).
   std::uint64_t mix(std::uint64_t x) const {
     const auto product = static_cast<Wide>(x) * factor_;
     return static_cast<std::uint64_t>(product) ^ static_cast<std::uint64_t>(product >> 64);
@@ -68,7 +69,7 @@ class IndexTable {
   }
 
   std::uint64_t key_ = random_word(), factor_ = random_word() | 1;
-  std::vector<Slot> slots_;  // size is a power of two
+  std::vector<Slot> slots_;  // the size is 0 or a power of two
 };
 
 }  // namespace orrery

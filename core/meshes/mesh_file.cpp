@@ -12,7 +12,7 @@ namespace {
 constexpr std::string_view kObjWords[] = {"v", "vt", "vn", "vp", "f",      "l",      "p",
                                           "g", "o",  "s",  "mg", "usemtl", "mtllib", "cstype"};
 
-// Returns the first word that is not in a comment.
+// Returns the first word that is not in a comment line, or an empty string.
 std::string_view first_word(std::string_view bytes) {
   TextReader text(bytes);
   do {
@@ -45,7 +45,8 @@ void finish_normals(TriangleMesh& mesh) {
   }
   for (const std::size_t i : missing) {
     mesh.normals[i] = safe_normalize(mesh.normals[i]);
-    if (mesh.normals[i] == Vec3d()) mesh.normals[i] = {0, 0, 1};  // used by no triangle with area
+    if (mesh.normals[i] == Vec3d())
+      mesh.normals[i] = {0, 0, 1};  // no triangle around it has area, or their normals cancel
   }
 }
 

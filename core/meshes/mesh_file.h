@@ -10,7 +10,7 @@
 
 namespace orrery {
 
-// Triangle mesh, in the axes and units of its file (taken as metres).
+// Triangle mesh, in the axes and units of its file. One unit is taken as one metre.
 struct TriangleMesh {
   std::vector<Vec3d> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;  // anticlockwise seen from the front
@@ -18,10 +18,10 @@ struct TriangleMesh {
   std::vector<std::array<double, 2>> uvs;               // per position, (0, 0) lower left; or empty
 };
 
-// Largest magnitude of a coordinate, the same as for scenes.
+// Largest absolute coordinate, in metres. Equals the limit for scenes.
 inline constexpr double kMaxMeshCoordinate = 1e12;
 
-// Limits on the content of a file; at most 2^31 - 1 each.
+// Limits on the content of a file. REQUIRES: each is at most 2^31 - 1.
 struct MeshLimits {
   std::size_t vertices = 10'000'000, triangles = 10'000'000;
 };
@@ -33,17 +33,18 @@ enum class MeshFormat { obj, ply, stl, gltf };
 MeshFormat mesh_format(std::string_view bytes);
 
 // Reads an OBJ, PLY (ASCII, binary of either byte order), STL (ASCII, binary) or glTF 2.0 file (.glb, or
-// .gltf with data: URIs). Detects the format from the content. Reads nothing except `bytes`; the same bytes
+// .gltf with data: URIs). Detects the format from the content. Reads nothing except `bytes`. The same bytes
 // give the same mesh.
 //
-// Merges all geometry of the file into one mesh; ignores materials and the like. Polygons become fans about
-// their first corner, which is correct for convex ones. Keeps triangles without area. Drops normals and uvs
-// that some vertices lack. Normals of length 0 are computed from the faces around their vertex. STL has
-// neither normals nor uvs, and its equal corners become one vertex. The v of glTF is flipped, so that (0, 0)
-// is at the lower left.
+// Merges all geometry of the file into one mesh, and ignores materials. Splits polygons into fans about their
+// first corner, which is correct for convex polygons. Keeps triangles without area. Keeps normals only if all
+// vertices have normals, and uvs only if all vertices have uvs. Computes normals of length 0 from the faces
+// around the vertex. A mesh from STL has no normals and no uvs, and its corners at equal positions become one
+// vertex. Flips the v of glTF, so that (0, 0) is at the lower left.
 //
-// Throws InputError (pointer "") with the place in the file, the value and the limit. Checks every size in a
-// file against `limits` and the available bytes before it allocates memory. Throws Cancelled. Thread-safe.
+// Throws InputError (pointer "") with the place in the file, the value and the limit. Before allocating
+// memory, checks every size in the file against `limits` and the number of available bytes. Throws Cancelled.
+// Thread-safe.
 TriangleMesh read_mesh(std::string_view bytes, const MeshLimits& limits = {});
 
 }  // namespace orrery

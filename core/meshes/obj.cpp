@@ -7,7 +7,7 @@
 namespace orrery {
 namespace {
 
-// Indices of a corner into the lists, counted from 0.
+// Indices of a corner into the lists of positions, uvs and normals, counted from 0.
 struct Corner {
   static constexpr std::uint32_t kNone = 0xffffffff;
   std::uint32_t position = kNone, uv = kNone, normal = kNone;
@@ -34,7 +34,7 @@ class ObjReader {
       } else if (keyword == "f") {
         read_face();
       }
-    } while (text_.next_line(!keyword.starts_with('#')));  // a comment ends with its line
+    } while (text_.next_line(!keyword.starts_with('#')));  // a backslash does not continue a comment
     return build();
   }
 
@@ -52,7 +52,8 @@ class ObjReader {
     return {u, v.empty() ? 0.0 : text_.parse_number(v, "vt")};
   }
 
-  // Reads "7", "7/2", "7//3" or "7/2/3". Corners with the same indices are one vertex.
+  // Reads "7", "7/2", "7//3" or "7/2/3". Returns the index of the vertex. Corners with the same indices share
+  // a vertex.
   std::uint32_t read_corner(std::string_view word) {
     std::array<std::string_view, 3> parts;
     std::size_t count = 0;
@@ -77,13 +78,14 @@ class ObjReader {
     return vertex;
   }
 
-  // Reads an index from 1 up, or from -1 backwards from the last entry so far.
+  // Reads a positive index, counted from 1, or a negative index, counted from the end of the list: -1 is the
+  // last of `count` entries. Returns the index counted from 0.
   std::uint32_t read_index(std::string_view word, std::size_t count, const char* what) const {
     const std::int64_t index = text_.integer_in(word, std::string(what) + " of a corner");
     const auto size = static_cast<std::int64_t>(count);
     const std::string got = " (got " + std::to_string(index) + ")";
     if (size == 0)
-      text_.fail(std::string(what) + " of a corner must be absent before the first " + what + got);
+      text_.fail(std::string(what) + " of a corner must refer to an earlier " + what + " line" + got);
     if (index == 0 || index > size || index < -size)
       text_.fail(std::string(what) + " of a corner must be from 1 to " + std::to_string(size) +
                  " or -1 to -" + std::to_string(size) + got);

@@ -50,13 +50,14 @@ class PlyReader {
   void count_vertices() {
     const auto is_vertex = [](const PlyElement& element) { return element.name == "vertex"; };
     const auto count = std::count_if(header_.elements.begin(), header_.elements.end(), is_vertex);
-    if (count != 1) body_.fail("file must have one element \"vertex\" (got " + std::to_string(count) + ")");
+    if (count != 1)
+      body_.fail("file must have exactly one element \"vertex\" (got " + std::to_string(count) + ")");
     vertices_ = std::find_if(header_.elements.begin(), header_.elements.end(), is_vertex)->count;
     check_vertices(vertices_, limits_);
   }
 
-  // Throws InputError if fewer bytes are left than the element needs. Called before memory is allocated for
-  // it.
+  // Throws InputError if fewer bytes are left than the element needs. Called before memory for the element is
+  // allocated.
   void check_bytes(const PlyElement& element) const {
     std::size_t fewest = 0;
     for (const PlyProperty& property : element.properties) {
@@ -85,7 +86,7 @@ class PlyReader {
     read_any_rows(element);
   }
 
-  // Reads rows of fixed size, in which each value has a fixed offset.
+  // Reads rows without lists: all rows have the same size, and each value has a fixed offset.
   void read_fixed_rows(const PlyElement& element) {
     struct Field {
       Slot slot;
@@ -135,7 +136,7 @@ class PlyReader {
 
   void read_faces(const PlyElement& element) {
     const auto polygon = std::find_if(element.properties.begin(), element.properties.end(), is_polygon);
-    if (polygon == element.properties.end()) body_.fail("face must have a list \"vertex_indices\"");
+    if (polygon == element.properties.end()) body_.fail("face must have a list property \"vertex_indices\"");
     check_triangles(mesh_.triangles.size() + element.count, limits_);
     mesh_.triangles.reserve(mesh_.triangles.size() + element.count);
     for (std::uint64_t i = 0; i < element.count; ++i)
@@ -159,7 +160,7 @@ class PlyReader {
       interruption_point(face + i);
       const double index = body_.read(value);
       if (!(index >= 0 && index < static_cast<double>(vertices_) && index == std::floor(index)))
-        body_.fail("vertex of face " + std::to_string(face) + " must be an integer of at least 0 and < " +
+        body_.fail("vertex of face " + std::to_string(face) + " must be an integer >= 0 and < " +
                    std::to_string(vertices_) + " (got " + text_of(index) + ")");
       fan[std::min<std::uint64_t>(i, 2)] = static_cast<std::uint32_t>(index);
       if (i < 2) continue;
@@ -170,7 +171,7 @@ class PlyReader {
 
   std::uint64_t list_length(const PlyProperty& property) {
     const double count = body_.read(body_.describe(*property.count_type));
-    constexpr double kMost = 4294967295.0;  // largest value of the widest type
+    constexpr double kMost = 4294967295.0;  // largest uint32
     if (!(count >= 0 && count <= kMost && count == std::floor(count)))
       body_.fail("length of a list must be an integer from 0 to 4294967295 (got " + text_of(count) + ")");
     return static_cast<std::uint64_t>(count);
@@ -196,7 +197,7 @@ class PlyReader {
   const PlyHeader& header_;
   const MeshLimits& limits_;
   Body body_;
-  std::uint64_t vertices_ = 0;  // from the header, because faces may precede vertices
+  std::uint64_t vertices_ = 0;  // number in the header; faces may precede vertices
   bool has_normals_ = false, has_uvs_ = false;
   TriangleMesh mesh_;
 };

@@ -10,7 +10,7 @@
 
 namespace orrery {
 
-// Returns one value of type T as a double, which represents it exactly.
+// Loads one value of type T. The conversion to double is exact.
 template <class T, std::endian order>
 double load_ply_value(const char* bytes) {
   std::array<char, sizeof(T)> copy;
@@ -33,7 +33,8 @@ inline PlyLoad ply_load(PlyType type, PlyEncoding encoding) {
                                              : ply_load_as<std::endian::little>(type);
 }
 
-// Sources of values: words of a text, or bytes. describe() makes the argument of read() and skip().
+// Bodies of PLY files: AsciiPly reads words of text, BinaryPly reads bytes. describe() returns the argument
+// for read() and skip().
 class AsciiPly {
  public:
   struct Value {};
@@ -41,7 +42,8 @@ class AsciiPly {
 
   explicit AsciiPly(const PlyHeader& header) : text_(header.body) {}
   Value describe(PlyType) const { return {}; }
-  // Returns the minimum size of a value: a digit and a blank, which only the last value may lack.
+  // Returns the minimum size of a value in bytes: one digit and one blank. Only the last value may lack the
+  // blank.
   static std::size_t min_bytes(PlyType) { return 2; }
   std::size_t bytes_left() const { return text_.rest().size() + 1; }
 

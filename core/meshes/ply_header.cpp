@@ -6,7 +6,7 @@
 namespace orrery {
 namespace {
 
-constexpr std::size_t kMaxProperties = 1000;  // total over elements; scans have a dozen
+constexpr std::size_t kMaxProperties = 1000;  // elements and properties; scans have about a dozen
 
 struct TypeName {
   std::string_view name;
@@ -24,7 +24,7 @@ PlyType read_type(TextReader& text) {
   const std::string_view word = text.word_of_line();
   for (const auto& [name, type] : kTypeNames)
     if (name == word) return type;
-  text.fail("must be a type from char to double (got " + excerpt(word) + ")");
+  text.fail("must be a PLY type such as int or float32 (got " + excerpt(word) + ")");
 }
 
 PlyEncoding read_encoding(TextReader& text) {
@@ -69,7 +69,7 @@ PlyHeader read_ply_header(std::string_view bytes) {
   std::optional<PlyEncoding> encoding;
   std::vector<PlyElement> elements;
   std::size_t properties = 0;
-  while (text.next_line()) {  // skips "ply"
+  while (text.next_line()) {  // skips the line "ply"
     const std::string_view keyword = text.word_of_line();
     if (keyword == "end_header") {
       if (!encoding) text.fail("\"end_header\" must follow a line \"format\"");
@@ -85,7 +85,7 @@ PlyHeader read_ply_header(std::string_view bytes) {
       elements.back().properties.push_back(read_property(text));
       ++properties;
     } else if (keyword != "comment" && keyword != "obj_info" && !keyword.empty()) {
-      text.fail("must be a keyword of a PLY header (got " + excerpt(keyword) + ")");
+      text.fail("must be a PLY header keyword (got " + excerpt(keyword) + ")");
     }
     if (properties + elements.size() > kMaxProperties)
       text.fail("header has more than " + grouped(kMaxProperties) + " elements and properties (limit " +

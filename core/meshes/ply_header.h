@@ -17,7 +17,7 @@ std::size_t size_of(PlyType type);
 struct PlyProperty {
   std::string_view name;
   PlyType type;                            // type of the value, or of each list entry
-  std::optional<PlyType> count_type = {};  // integer type of a list's length
+  std::optional<PlyType> count_type = {};  // integer type of the list length; nullopt if not a list
 };
 
 struct PlyElement {
@@ -33,7 +33,7 @@ struct PlyHeader {
 };
 
 // Reads the header of a PLY file (Turk, The PLY Polygon File Format, 1994). Throws InputError with the line
-// if it is invalid, or Cancelled. Views point into `bytes`.
+// number if the header is invalid. Throws Cancelled. The views of the result point into `bytes`.
 PlyHeader read_ply_header(std::string_view bytes);
 
 }  // namespace orrery

@@ -5,30 +5,30 @@
 
 #include "core/meshes/mesh_file.h"
 
-// Repairs of meshes before use. Each function keeps the order of the remaining elements. Each may throw
-// Cancelled; the mesh is then unusable. REQUIRES: valid indices and finite coordinates, as returned by
+// Repairs meshes before use. Each function preserves the order of the remaining elements. Each may throw
+// Cancelled, which leaves the mesh unusable. REQUIRES: valid indices and finite coordinates, as returned by
 // read_mesh.
 namespace orrery {
 
-// Removes triangles without area, whose face_normal() is zero, because no ray can hit them. Keeps all
-// vertices. Returns the number removed.
+// Removes triangles without area (face_normal() is 0), which no ray can hit. Keeps all vertices. Returns the
+// number of removed triangles.
 std::size_t drop_degenerate(TriangleMesh& mesh);
 
-// Position number of each vertex, counted from 0. Vertices at the same position share a number.
+// Position number of each vertex, counted from 0. Vertices at the same position have the same number.
 using PositionIndices = std::vector<std::uint32_t>;
 PositionIndices position_indices_of(const std::vector<Vec3d>& positions);
-// Gives different numbers to vertices that share one but differ in `positions`.
+// Assigns different numbers to vertices that have the same number but different `positions`.
 void split_position_indices(PositionIndices& places, const std::vector<Vec3d>& positions);
 
-// Returns the number of triangle pairs around a position, which smooth_normals() compares. REQUIRES: `places`
-// has a number for each vertex.
+// Returns the number of pairs of triangles with a corner at the same position. smooth_normals() compares
+// these pairs. REQUIRES: `places` has a number for each vertex.
 std::uint64_t count_pairs(const TriangleMesh& mesh, const PositionIndices& places);
 
-// Computes vertex normals. Each corner gets the mean normal of the triangles around its position whose
-// normals differ from its own triangle's by less than `crease_degrees` (in [0, 180]). Normals are weighted by
-// the angle at the corner (Thuermer and Wuethrich, Computing Vertex Normals from Polygonal Facets, 1998).
-// Splits vertices whose corners differ, merges equal vertices, and removes unused ones. Replaces normals,
-// keeps uvs. REQUIRES: `places` has a number for each vertex.
+// Replaces the vertex normals. The normal of a corner is the mean over the triangles around its position
+// whose normals deviate from that of its triangle by less than `crease_degrees`, in [0, 180]. Triangle
+// normals are weighted by the angle at the corner (Thuermer and Wuethrich, Computing Vertex Normals from
+// Polygonal Facets, 1998). Splits vertices whose corners have different normals, merges equal vertices, and
+// removes unused vertices. Keeps uvs. REQUIRES: `places` has a number for each vertex.
 void smooth_normals(TriangleMesh& mesh, double crease_degrees, const PositionIndices& places);
 inline void smooth_normals(TriangleMesh& mesh, double crease_degrees) {
   smooth_normals(mesh, crease_degrees, position_indices_of(mesh.positions));

@@ -12,7 +12,7 @@ namespace {
 
 // Returns the angle between unit vectors in radians, or 0 between two zero vectors: 2 atan(|u - v| / |u + v|)
 // (Kahan), accurate to a few ulps for all angles. Halves the arctangent three times before the series. Uses
-// only IEEE operations, so that all machines return the same bits.
+// only IEEE operations, so that every machine returns the same bits.
 double angle_between(const Vec3d& u, const Vec3d& v) {
   const double opposite = length(u - v), adjacent = length(u + v);
   if (opposite == 0) return 0;
@@ -24,8 +24,8 @@ double angle_between(const Vec3d& u, const Vec3d& v) {
   return 16 * tangent * series;
 }
 
-// Corners (3 * triangle + 0, 1 or 2) by position: those of position p are list[first[p]] .. list[first[p + 1]
-// - 1], in ascending order.
+// Corners by position. Corner k of triangle t has number 3 t + k. The corners at position p are
+// list[first[p]] to list[first[p + 1] - 1], in ascending order.
 struct Corners {
   std::vector<std::uint32_t> position;  // position number of each corner
   std::vector<std::uint32_t> first, list;
@@ -48,8 +48,8 @@ struct Corners {
 };
 
 struct Facets {
-  std::vector<Vec3d> normals;   // by triangle; 0 without area
-  std::vector<Vec3d> weighted;  // by corner: the normal times the angle there
+  std::vector<Vec3d> normals;   // per triangle; 0 if it has no area
+  std::vector<Vec3d> weighted;  // per corner: the normal times the angle at the corner, in radians
 
   explicit Facets(const TriangleMesh& mesh) {
     normals.reserve(mesh.triangles.size());
@@ -67,7 +67,7 @@ struct Facets {
   }
 };
 
-// Returns the normal of a corner. A triangle without area averages all triangles around the corner.
+// Returns the normal of a corner. If its triangle has no area, averages over all triangles around the corner.
 Vec3d corner_normal(std::uint32_t corner, const Corners& corners, const Facets& facets, double min_cosine) {
   const Vec3d own = facets.normals[corner / 3];
   const bool flat = own == Vec3d();
@@ -81,7 +81,7 @@ Vec3d corner_normal(std::uint32_t corner, const Corners& corners, const Facets& 
   }
   for (const Vec3d& candidate : {sum, own})
     if (const Vec3d unit = safe_normalize(candidate); unit != Vec3d()) return unit;
-  return {0, 0, 1};  // only triangles without area, which no ray hits
+  return {0, 0, 1};  // reached only for triangles without area, which no ray hits
 }
 
 }  // namespace
@@ -93,7 +93,7 @@ PositionIndices position_indices_of(const std::vector<Vec3d>& positions) {
 }
 
 void split_position_indices(PositionIndices& places, const std::vector<Vec3d>& positions) {
-  VertexList apart(true, false);  // stores the old number as normal
+  VertexList apart(true, false);  // stores the old number in the normal
   for (std::size_t v = 0; v < places.size(); ++v)
     places[v] = apart.add({positions[v], Vec3d(places[v], 0, 0), {}});
 }

@@ -4,8 +4,8 @@
 #include "core/meshes/text.h"
 #include "core/meshes/vertex_list.h"
 
-// Stereolithography files (3D Systems, 1989). Stored facet normals are ignored, because many writers leave
-// them 0. The order of the corners determines the front.
+// Stereolithography files (3D Systems, 1989). Stored facet normals are ignored, because many programs write
+// 0. The order of the corners determines the front side.
 namespace orrery {
 namespace {
 
@@ -90,7 +90,8 @@ std::array<Vec3d, 3> read_facet(TextReader& text) {
   return corners;
 }
 
-// Reads one or more solids: "solid", any text up to the end of the line, facets, "endsolid", any text.
+// Reads solids. Each is "solid" with any text on the same line, facets, and "endsolid" with any text on the
+// same line.
 TriangleMesh read_ascii(std::string_view bytes, const MeshLimits& limits) {
   TextReader text(bytes);
   Builder builder(limits);

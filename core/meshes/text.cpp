@@ -104,7 +104,7 @@ double TextReader::parse_number(std::string_view word, std::string_view name) co
   const char* end = digits.data() + digits.size();
   double value = 0;
   const auto [stop, error] = std::from_chars(digits.data(), end, value);
-  // Rounds to 0 if the number is too small for a double, rather than too large.
+  // from_chars() reports overflow and underflow by the same error. Numbers that underflow are rounded to 0.
   const bool vanishes = error == std::errc::result_out_of_range && stop == end &&
                         std::fabs(std::strtod(std::string(digits).c_str(), nullptr)) < 1;
   if (vanishes) return 0;

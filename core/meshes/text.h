@@ -6,34 +6,34 @@
 
 namespace orrery {
 
-// Reads a text word by word. Words are separated by blanks and control characters. Lines end with \n, \r or
-// \r\n and are numbered from 1. Does not copy the text, so that lines may have any length. Functions that
-// advance throw Cancelled. Not thread-safe.
+// Reads text word by word, without copying it. Words are separated by blanks and control characters. Lines
+// end with \n, \r or \r\n, are numbered from 1 and may have any length. Functions that read or skip words
+// throw Cancelled. Not thread-safe.
 class TextReader {
  public:
-  // If `joining`, a backslash at the end of a line continues it on the next one.
+  // With `joining`, a backslash at the end of a line joins it with the next line.
   explicit TextReader(std::string_view text, bool joining = false) : rest_(text), joining_(joining) {}
 
-  // Returns the next word of this line, or an empty string at its end.
+  // Returns the next word of this line, or an empty string at the end of the line.
   std::string_view word_of_line();
   // Returns the next word on this line or a later one, or an empty string at the end of the text.
   std::string_view word();
-  // Moves to the start of the next line, skipping lines joined by a backslash if `may_join`. Returns false at
-  // the end of the text.
+  // Moves to the start of the next line. With `may_join`, also skips the lines that are joined to this one.
+  // Returns false at the end of the text.
   bool next_line(bool may_join = true);
-  // Moves past the end of this line, to data that is not text. If `lone_returns`, the line ends with \r
-  // alone, and a \n after it is data.
+  // Moves past the end of this line, to binary data. With `lone_returns`, a line ends with \r alone, and a \n
+  // after it belongs to the data.
   void end_text(bool lone_returns);
 
   // Returns the next word on this line or a later one as a number: see parse_number().
   double number(std::string_view name) { return parse_number(word(), name); }
 
-  // Returns the number that `word` spells: the nearest double, or an integer. Throws InputError with the
-  // line, `name` and the word if it is invalid or out of range.
+  // Converts `word` to the nearest double, or to an integer. Throws InputError with the line number, `name`
+  // and the word if the word is not a number or out of range.
   double parse_number(std::string_view word, std::string_view name) const;
   std::int64_t integer_in(std::string_view word, std::string_view name) const;
 
-  [[noreturn]] void fail(const std::string& detail) const;  // throws InputError with the line
+  [[noreturn]] void fail(const std::string& detail) const;  // throws InputError with the line number
   std::string_view rest() const { return rest_; }
 
  private:
@@ -45,7 +45,8 @@ class TextReader {
   std::size_t line_ = 1;
 };
 
-// Returns `text` for a message: quoted, cut to `longest` bytes, with "?" for unprintable characters.
+// Returns `text` for a message: quoted, truncated to `longest` bytes, and with "?" for each byte that is not
+// printable ASCII.
 std::string excerpt(std::string_view text, std::size_t longest = 40);
 
 }  // namespace orrery

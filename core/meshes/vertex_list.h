@@ -26,11 +26,11 @@ class VertexList {
  public:
   VertexList(bool with_normals, bool with_uvs) : with_normals_(with_normals), with_uvs_(with_uvs) {}
 
-  // Returns the number of `vertex` in the list. REQUIRES: `vertex` is finite, with 0 for values that the list
-  // does not store; the list has fewer than 2^31 vertices.
+  // Returns the index of `vertex` in the list, after appending it if it is new. REQUIRES: `vertex` is finite,
+  // and values that the list does not store are 0. The list has fewer than 2^31 vertices.
   std::uint32_t add(const Vertex& vertex);
   std::size_t size() const { return mesh_.positions.size(); }
-  // Returns the vertices without triangles, and empties the list.
+  // Moves the vertices out, as a mesh without triangles. The list must not be used afterwards.
   TriangleMesh take() { return std::move(mesh_); }
 
  private:

@@ -8,8 +8,8 @@
 
 namespace orrery {
 
-// Primitive in the list that an acceleration structure is built over. An instance counts as one primitive;
-// its hits carry the numbers of the primitives inside it.
+// Primitive in the list that an acceleration structure is built over. An instance is one primitive. Its hits
+// report the numbers of the primitives inside the instance.
 template <class T>
 struct Primitive {
   const ShapeKernel<T>* kernel;
@@ -21,19 +21,21 @@ using PrimitiveList = std::vector<Primitive<T>>;
 
 // Statistics of a built structure.
 struct AcceleratorFacts {
-  std::size_t bytes = 0;       // without the scene itself
+  std::size_t bytes = 0;       // memory of the structure, without the scene
   int depth = 0;               // nodes on the longest path from the root to a primitive
-  std::size_t references = 0;  // primitive references; more than primitives if cells share some
+  std::size_t references = 0;  // primitive references; more than primitives if cells share them
   bool refitted = false;       // boxes were updated after primitives moved
-  // Growth of the boxes' surface area since the build, relative to the area of their contents.
+  // Surface area of all boxes divided by that of the primitives' boxes, relative to the same quotient after
+  // the build.
   double surface_area_growth = 1;
 };
 
-// Largest surface_area_growth of a refitted structure. Above it, a new structure is built.
+// Maximum surface_area_growth of a refitted structure. Above this value, a new structure is built.
 inline constexpr double kMaxSurfaceAreaGrowth = 1.5;
 
-// Finds the nearest hits of rays, with exactly the result of testing every primitive: the same distance and
-// primitive. Equal distances go to the lower primitive number. Immutable once built and thread-safe.
+// Acceleration structure that finds the nearest hits of rays. The distance and the primitive are exactly
+// those found by testing every primitive. At equal distances, the lower primitive number wins. Immutable once
+// built, and thread-safe.
 template <class T>
 class Accelerator {
  public:
@@ -41,12 +43,12 @@ class Accelerator {
 
   virtual AcceleratorFacts facts() const = 0;
 
-  // Returns this structure refitted to moved primitives; `moved` lists them in the same order. Returns null
-  // if a rebuild is required: refitting is not supported, or surface_area_growth would exceed
-  // kMaxSurfaceAreaGrowth.
+  // Returns a copy of this structure, refitted to moved primitives. `moved` has the order of the original
+  // list. Returns null if a rebuild is required: refitting is not supported, or surface_area_growth would
+  // exceed kMaxSurfaceAreaGrowth.
   virtual std::unique_ptr<Accelerator> refitted(const PrimitiveList<T>& /*moved*/) const { return nullptr; }
 
-  // Finds the nearest hit of every active ray of `groups`. REQUIRES: hits.t and hits.primitive hold t_max and
+  // Finds the nearest hit of every active ray of `groups`. REQUIRES: hits.t and hits.primitive are t_max and
   // kNoPrimitive, or an earlier hit of the ray. An earlier hit is replaced only by a nearer one, or by one at
   // the same distance with a lower primitive number.
   virtual void closest(const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits,
@@ -60,11 +62,11 @@ template <class T>
 using AcceleratorPtr = std::unique_ptr<Accelerator<T>>;
 
 // Cost model: approximate nanoseconds per counted operation, for comparing structures by their counts. Fitted
-// to times of `script/bench structures` on one machine; single fits are within 40 %. Only ratios are
+// to times of `script/bench structures` on one machine, with deviations of up to 40 %. Only ratios are
 // meaningful.
 struct AcceleratorCosts {
   double ray, visit, box, primitive;
-  double each = 0;  // per ray and primitive of the scene, for structures that test every primitive
+  double each = 0;  // per pair of ray and primitive, for structures that test every primitive
 
   double of(std::uint64_t rays, const AcceleratorCounts& counts) const {
     return ray * static_cast<double>(rays) + visit * static_cast<double>(counts.node_visits) +

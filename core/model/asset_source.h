@@ -10,14 +10,14 @@
 
 namespace orrery {
 
-// Source of meshes and pictures that are not written in the scene itself. The base class has none; loaders of
-// scenes may override it. Each function throws InputError (pointer "") if the asset is missing or invalid,
-// and Cancelled. Only the thread that loads the scene calls it.
+// Source of meshes and images that a scene refers to by name. The base class rejects every name. Scene
+// loaders may override the functions. Each function throws InputError (pointer "") if the asset is missing or
+// invalid, and may throw Cancelled. Called only by the thread that loads the scene.
 class AssetSource {
  public:
   virtual ~AssetSource() = default;
 
-  // Returns the contents of a file next to the scene file.
+  // Returns the contents of a file in or below the folder of the scene file.
   virtual TriangleMesh mesh_file(const std::string& /*name*/) const { refuse_files(); }
   virtual TexelsPtr picture_file(const std::string& /*name*/) const { refuse_files(); }
   // Returns an uploaded asset by the SHA-256 of its bytes, in hexadecimal.
@@ -27,19 +27,20 @@ class AssetSource {
  private:
   [[noreturn]] static void refuse_files() {
     throw InputError("",
-                     "files can be read on the command line only; upload the file and name it in \"asset\"");
+                     "files can be read only on the command line; upload the file and use \"asset\" instead");
   }
   [[noreturn]] static void refuse_assets() {
-    throw InputError("", "assets exist in the service only; name a file next to the scene in \"file\"");
+    throw InputError("", "assets exist only on a server; use \"file\" instead");
   }
 };
 
-// Source of a scene's meshes, with running totals: the limits apply to all meshes of a scene together.
+// Source of the meshes of a scene, with running totals, because limits apply to all meshes of a scene
+// together.
 struct MeshSource {
   const AssetSource& assets;
   std::size_t vertices = 0, triangles = 0;  // including those of animation keys
-  bool full = false;
-  std::uint64_t pairs = 0;  // triangle pairs around a vertex that smoothing compares
+  bool full = false;                        // a limit was exceeded; further meshes are skipped
+  std::uint64_t pairs = 0;                  // pairs of triangles around a vertex, compared by smoothing
 };
 
 }  // namespace orrery

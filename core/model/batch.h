@@ -7,12 +7,12 @@
 #include "core/math/vec3.h"
 
 // Batches: many rays in structure-of-arrays form, passed between stages. T is float or double (long double in
-// oracles). Arrays are aligned for whole registers and hold kBatchRoom entries, so that a stage may read and
-// write past `count` up to the next register boundary.
+// reference tests). Arrays are aligned for whole registers and have kBatchRoom elements. A stage may
+// therefore read and write past `count`, up to the next register boundary.
 namespace orrery {
 
 inline constexpr int kBatch = 1024;             // maximum rays per batch
-inline constexpr int kBatchRoom = kBatch + 16;  // the widest register is 16 lanes
+inline constexpr int kBatchRoom = kBatch + 16;  // the widest register has 16 lanes
 
 template <class T>
 struct Array {
@@ -59,18 +59,20 @@ struct Vec3Array {
   }
 };
 
-// Indices as wide as T, so that comparisons of indices and of T share a mask.
+// Loads indices as wide as T, so that comparisons of indices and of T have the same mask type.
 template <class T>
 [[gnu::always_inline]] inline IndexLanes<T> load_index(const Array<IndexOf<T>>& a, int i) {
   return {&a.values[static_cast<std::size_t>(i)], stdx::vector_aligned};
 }
 
-// Registers of a batch that a stage works on: the index of the first ray of each register, ascending.
+// Registers of a batch that a stage processes. Each is stored as the index of its first ray, in ascending
+// order.
 class LaneGroups {
  public:
   LaneGroups() {}  // leaves first_ uninitialised
 
-  // Returns every register that holds one of the rays from..to-1. REQUIRES: `from` is a multiple of `width`.
+  // Returns every register that contains one of the rays `from` to `to` - 1. REQUIRES: `from` is a multiple
+  // of `width`.
   static LaneGroups covering(int from, int to, int width) {
     LaneGroups all;
     for (int i = from; i < to; i += width) all.add(i);
@@ -98,7 +100,7 @@ class LaneGroups {
   std::array<std::uint16_t, kBatch> first_;
 };
 
-// Ray with points origin + t * direction. Hit formulas accept any non-zero direction. Stages pass unit
+// Ray of points origin + t * direction. Hit formulas accept any non-zero direction. Stages use unit
 // directions, so that t is in metres.
 template <class N>
 struct Ray {
@@ -107,14 +109,14 @@ struct Ray {
   [[gnu::always_inline]] Vec3<N> at(const N& t) const { return origin + direction * t; }
 };
 
-// Rays of a batch. t_max is the exclusive far end in units of the direction's length. A ray with t_max < 0 is
-// inactive and hits nothing.
+// Rays of a batch. t_max is the exclusive far end in units of the direction's length. A ray with t_max <= 0
+// is inactive and hits nothing.
 template <class T>
 struct RayBatch {
   int count = 0;
   Vec3Array<T> origin, direction;
   Array<T> t_max;
-  Array<T> time;  // share of the exposure, in [0, 1); filled only if something moves during the exposure
+  Array<T> time;  // fraction of the exposure, in [0, 1); filled only if something moves during the exposure
 
   [[gnu::always_inline]] Ray<Lanes<T>> at(int i) const { return {origin.at(i), direction.at(i)}; }
   Ray<T> operator[](int i) const { return {origin[i], direction[i]}; }
@@ -143,8 +145,8 @@ LaneGroups with_active_rays(const RayBatch<T>& rays, const LaneGroups& groups) {
 
 inline constexpr int kNoPrimitive = -1;
 
-// Hit data that stages of a plan read in addition to t, primitive, position, normals, side, step and
-// material. Arrays that no stage reads are not filled.
+// Optional hit data that the stages of a plan read, in addition to t, primitive, position, normals, side,
+// step and material. Optional arrays that no stage reads are not filled.
 struct SurfaceFields {
   bool parameters = false;  // u and v of hits and surfaces, tangent
   bool identity = false;    // instance of hits, object of surfaces
@@ -160,20 +162,20 @@ struct SurfaceFields {
   }
 };
 
-// Nearest hit so far of each ray. t starts as the ray's t_max, primitive as kNoPrimitive.
-// ShapeKernel::parameters() derives the other arrays once per ray after the search, because a search replaces
-// most of the hits it finds.
+// Nearest known hit of each ray. Initially, t is t_max and primitive is kNoPrimitive.
+// ShapeKernel::parameters() computes the other arrays once per ray after the search, because a search
+// replaces most of the hits it finds.
 template <class T>
 struct HitBatch {
   Array<T> t;
   Array<IndexOf<T>> primitive;
-  Array<T> u, v;               // shape parameters (triangle: weights of the second and third vertex)
+  Array<T> u, v;               // shape parameters; triangles: weights of the second and third vertex
   Array<IndexOf<T>> instance;  // instance of the primitive, counted from 0, or kNoInstance
 };
 inline constexpr int kNoInstance = -1;
 
-// Returns the lanes whose hit at t on primitive `id` replaces (best, best_id): the hit is nearer, or equally
-// near with a lower primitive number. NaN and infinity are not hits.
+// Returns the lanes in which the hit at t on primitive `id` replaces (best, best_id). A hit replaces a
+// farther one, or an equally near one with a higher primitive number. NaN and infinity are not hits.
 template <class N, class I>
 [[gnu::always_inline]] inline MaskOf<N> is_nearer_hit(const N& t, const I& id, const N& best,
                                                       const I& best_id) {
@@ -182,24 +184,24 @@ template <class N, class I>
   return t < best || (t == best && lower && t <= N(kFarthest));
 }
 
-// Surface at each hit. Unit normals point to the side the ray came from.
+// Surface at each hit. Normals are unit and point to the side that the ray came from.
 template <class T>
 struct SurfaceBatch {
   Vec3Array<T> position;   // corrected to lie on the shape
   Vec3Array<T> normal;     // for shading; may be interpolated
-  Vec3Array<T> geometric;  // normal of the true surface
+  Vec3Array<T> geometric;  // normal of the actual surface
   Array<T> side;           // +1: ray came from outside, -1: from inside
-  Array<T> step;           // metres along `geometric` that clear the rounding error of the surface
+  Array<T> step;           // metres along `geometric` that exceed the rounding error of the position
   Array<IndexOf<T>> material;
-  // See SurfaceFields.
+  // Optional arrays: see SurfaceFields.
   Vec3Array<T> tangent;      // unit, direction of increasing u, perpendicular to the geometric normal
-  Array<T> u, v;             // texture coordinates of the mesh, or else the shape's parameters
+  Array<T> u, v;             // texture coordinates of a mesh that has them, otherwise shape parameters
   Array<T> footprint;        // pixel width in metres, across the ray
   Array<T> travelled;        // metres from the ray's origin
   Array<IndexOf<T>> object;  // object number in the scene: `objects` first, then `instances`
 
-  // Returns the origins of rays along `direction` from the surfaces at register i, offset to the side the
-  // rays leave on.
+  // Returns the origins of rays along `direction` from the surfaces in register i. The origins are offset by
+  // `step` to the side on which the rays leave.
   Vec3<Lanes<T>> origin_toward(int i, const Vec3<Lanes<T>>& direction) const {
     const Vec3<Lanes<T>> true_normal = geometric.at(i);
     const Lanes<T> clear = step.at(i);

@@ -7,13 +7,13 @@
 
 namespace orrery {
 
-// Bound on the difference that an approximation makes to a picture.
+// Bound on the error that an approximation causes in an image.
 struct Bound {
-  // Evidence for the numbers, strongest first. exact: nothing changes. proved: no picture differs by more.
-  // audited: measured at randomly drawn pixels. estimated: from samples.
+  // Evidence for the numbers, strongest first. exact: no error. proved: no image has a larger error. audited:
+  // measured at random pixels. estimated: computed from samples.
   enum class Kind { exact, proved, audited, estimated, unknown };
   Kind kind = Kind::exact;
-  // Largest and root-mean-square difference of a pixel channel, in linear radiance; nullopt if unknown.
+  // Largest and root-mean-square error of a pixel channel, in linear radiance. nullopt if unknown.
   std::optional<double> max = 0, rms = 0;
 
   static Bound unknown() { return {Kind::unknown, std::nullopt, std::nullopt}; }
@@ -21,15 +21,15 @@ struct Bound {
   static Bound proved(double max, double rms) {
     return std::isfinite(max) && std::isfinite(rms) ? Bound{Kind::proved, max, rms} : unknown();
   }
-  // Returns a bound from measured pixels, which do not limit the largest difference.
+  // Returns a bound from measured pixels. They do not bound the largest error.
   static Bound audited(double rms) { return {Kind::audited, std::nullopt, rms}; }
-  // Returns a bound from samples, which do not limit the largest difference, or unknown() if `rms` is not
-  // finite.
+  // Returns a bound from samples, or unknown() if `rms` is not finite. Samples do not bound the largest
+  // error.
   static Bound estimated(double rms) {
     return std::isfinite(rms) ? Bound{Kind::estimated, std::nullopt, rms} : unknown();
   }
 
-  // Returns the bound of both differences together, with the weaker kind.
+  // Returns a bound on the sum of both errors, with the weaker kind of evidence.
   Bound operator+(const Bound& other) const {
     const auto sum = [](const std::optional<double>& a, const std::optional<double>& b) {
       return a && b ? std::optional(*a + *b) : std::nullopt;

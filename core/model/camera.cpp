@@ -11,7 +11,7 @@ CameraFrame frame_at(const CameraPlacement& placement, const Camera& camera, con
   const Vec3d pole = safe_normalize(placement.up);
   const Vec3d offset = placement.eye - placement.look_at;
   const double own_distance = length(offset);
-  // The camera's own direction, split into the parts along the pole and across it.
+  // Direction from look_at to the eye of the scene's camera, split into the parts along and across the pole.
   const Vec3d direction = safe_normalize(offset);
   const double own_sine = dot(direction, pole);
   const Vec3d across = direction - pole * own_sine;

@@ -6,31 +6,31 @@
 
 #include "core/model/tile.h"
 
-// Cameras. Right-handed coordinates in metres; angles in degrees in scenes and requests.
+// Cameras. Coordinates are right-handed, in metres. Angles in scenes and requests are in degrees.
 namespace orrery {
 
 class Params;
 
 inline constexpr int kMaxBlades = 16;
 
-// Aperture shape: a regular polygon whose corners lie at the aperture radius.
+// Aperture shape: a regular polygon whose corners are at the aperture radius from the centre.
 struct LensBlades {
-  int count = 0;       // sides, at least 3; 0: round
+  int count = 0;       // number of sides, at least 3; 0: round
   double degrees = 0;  // angle of the first corner, from right toward up
 };
 
-// Placement of a scene's own camera.
+// Placement of the camera in the scene file.
 struct CameraPlacement {
   Vec3d eye{0, 0, 4}, look_at{0, 0, 0}, up{0, 1, 0};
-  double aperture_radius = 0;                 // thin lens radius, metres; 0: pinhole
-  std::optional<double> focus_distance = {};  // along the view, metres; nullopt: distance to look_at
+  double aperture_radius = 0;                 // radius of the thin lens, metres; 0: pinhole
+  std::optional<double> focus_distance = {};  // along the view axis, metres; nullopt: distance to look_at
   LensBlades blades = {};
 };
 
-// Camera position on an orbit, relative to the scene's own camera. The azimuth turns about `up` through
+// Camera position on an orbit, relative to the camera of the scene. The azimuth turns about `up` through
 // `look_at`, anticlockwise seen from above: x' = x cos + z sin, z' = -x sin + z cos for up = y. The elevation
-// lifts toward `up`. `distance` is a factor of the own distance. `pan` then moves the camera, in metres of
-// the scene's space.
+// raises the camera toward `up`. `distance` is a factor of the scene camera's distance from look_at. `pan`
+// then translates the camera, in metres, in scene coordinates.
 struct Orbit {
   double azimuth_degrees = 0, elevation_degrees = 0, distance = 1;
   Vec3d pan{0, 0, 0};
@@ -40,12 +40,13 @@ struct Orbit {
 struct CameraFrame {
   Vec3d eye, right, up, back;
   double distance = 0;     // from eye to look_at, metres
-  double half_extent = 0;  // half the picture height: see Camera::half_extent()
+  double half_extent = 0;  // half the image height: see Camera::half_extent()
   double aperture_radius = 0, focus_distance = 0;
   LensBlades blades;
 };
 
-// Sample positions of a tile's slots within their pixels, in [0, 1); wider filters go beyond that range.
+// Sample positions within the pixels of a tile, one per batch element, in [0, 1). Filters wider than a pixel
+// exceed this range.
 struct TileSamples {
   Array<float> u, v;
 
@@ -57,7 +58,7 @@ struct TileSamples {
   }
 };
 
-// Camera model that generates rays, one object per type. Immutable and thread-safe.
+// Camera model that generates rays. Each camera type is a derived class. Immutable and thread-safe.
 class Camera {
  public:
   virtual ~Camera() = default;
@@ -71,16 +72,16 @@ class Camera {
   virtual const char* type() const = 0;
   // Returns true if all rays have the same direction.
   virtual bool parallel() const = 0;
-  // Returns true if rays leave in all directions, so that no focal plane exists.
+  // Returns true if rays leave in all directions. There is no focal plane then.
   virtual bool all_around() const { return false; }
-  // Returns half the picture height. Parallel cameras: in metres. Others: on the plane at distance 1 from the
-  // eye. All-around cameras: in radians. `distance` is the orbit's factor of the own distance.
+  // Returns half the image height: in metres for parallel cameras, in radians for all-around cameras, and on
+  // the plane 1 m from the eye for others. `distance` is Orbit::distance.
   virtual double half_extent(double distance) const = 0;
-  // Returns this camera with another vertical field of view, in (0, 180) degrees, or null if it has none.
+  // Returns a copy with another vertical field of view, in (0, 180) degrees, or null if the type has none.
   virtual std::unique_ptr<Camera> with_fov(double /*degrees*/) const { return nullptr; }
 
-  // Generates one ray per slot for a tile of a picture of width x height pixels. Slots outside the picture
-  // get inactive rays.
+  // Generates the rays of a tile of an image of `width` x `height` pixels, one per batch element. Rays of
+  // pixels outside the image are inactive.
   virtual void generate(const CameraFrame& frame, int width, int height, const TileView& tile,
                         const TileSamples& samples, RayBatch<float>& out) const = 0;
   virtual void generate(const CameraFrame& frame, int width, int height, const TileView& tile,
@@ -93,12 +94,13 @@ struct CameraType {
   std::unique_ptr<Camera> (*read)(Params&);
 };
 
-// Returns the frame of `camera` at `orbit`. The elevation is clamped to straight above and below, where the
-// azimuth keeps the picture upright. No division by the cosine of the elevation occurs. REQUIRES: eye,
-// look_at and up are not collinear.
+// Returns the frame of `camera` at `orbit`. The elevation is clamped to straight above and straight below.
+// There, the azimuth still defines the image orientation, because nothing is divided by the cosine of the
+// elevation. REQUIRES: eye, look_at and up are not collinear.
 CameraFrame frame_at(const CameraPlacement& placement, const Camera& camera, const Orbit& orbit);
 
-// Pixel width in metres across the ray: `width` at the ray's origin plus `spread` per metre.
+// Pixel width in metres across the ray: `width` at the origin of the ray, plus `spread` per metre along the
+// ray.
 struct PixelFootprint {
   double width, spread;
 };

@@ -4,13 +4,13 @@
 
 #include "core/model/path.h"
 
-// Film channels besides radiance (AOVs): properties of the first hits of camera rays.
+// Film channels other than radiance (AOVs): properties of the first hits of camera rays.
 namespace orrery {
 
-// One channel of a batch, by slot.
+// Values of one channel for a batch of camera rays.
 template <class T>
 struct ChannelBatch {
-  Vec3Array<T> value;  // as many components as the channel has
+  Vec3Array<T> value;  // only the components that the channel has
   Array<T> weight;     // 1 if the ray hit something, else 0
 };
 
@@ -22,7 +22,7 @@ struct FirstHits {
   const SurfaceBatch<T>& surface;
 };
 
-// Reduction of a pixel's samples to one value.
+// Reduction of the samples of a pixel to one value.
 enum class ChannelMean {
   of_hits,      // mean over the samples that hit something
   first_sample  // value of the first sample, for identifiers
@@ -31,7 +31,7 @@ enum class ChannelMean {
 struct ChannelType {
   const char* name;
   const char* summary;
-  std::vector<const char*> components;  // 1 to 3 suffixes: "X", "Y", "Z"
+  std::vector<const char*> components;  // 1 to 3 name suffixes, such as "X", "Y", "Z"
   ChannelMean mean;
   float nothing;         // value of a pixel in which every ray missed
   SurfaceFields fields;  // surface fields that `record` reads

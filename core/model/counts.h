@@ -7,9 +7,9 @@
 
 namespace orrery {
 
-inline constexpr int kMaxRayDepth = 32;  // largest depth that a request may ask for
+inline constexpr int kMaxRayDepth = 32;  // largest max_depth that a request may set
 
-// Ray counts by kind and depth. A shadow ray has the depth of the ray whose hit spawned it.
+// Ray counts by kind and depth. The depth of a shadow ray is that of the ray whose hit spawned it.
 struct RayCounts {
   using ByDepth = std::array<std::uint64_t, kMaxRayDepth + 1>;
   std::uint64_t camera = 0;
@@ -30,12 +30,12 @@ struct RayCounts {
   }
 };
 
-// Work counters of one piece of a render.
+// Counters of one part of a render.
 struct TraceCounts {
   RayCounts rays;
   AcceleratorCounts accelerator;
   std::uint64_t camera_hits = 0;  // camera rays that hit something
-  std::uint64_t cut_rays = 0;     // rays not traced because of depth or weight
+  std::uint64_t cut_rays = 0;     // rays not traced because of their depth or weight
 
   void add(const TraceCounts& other) {
     rays.add(other.rays);

@@ -7,7 +7,7 @@
 
 namespace orrery {
 
-// Purpose of a pair of random numbers. Each purpose has its own sequence at each depth.
+// Purpose of a pair of random numbers. Each purpose has a separate sequence at each depth.
 enum class SampleSet : std::uint32_t {
   pixel,
   light,
@@ -17,12 +17,12 @@ enum class SampleSet : std::uint32_t {
   emission_ray,
   lens,
   emission_ray_lens,
-  environment = 1u << 16  // above the numbers of all depths
+  environment = 1u << 16  // exceeds the sequence numbers of all other sets at all depths
 };
-inline constexpr std::uint32_t kSampleSets = 8;  // sets before `environment`
+inline constexpr std::uint32_t kSampleSets = 8;  // number of sets before `environment`
 
-// Random numbers of one sample of a tile: pure functions of (seed, frame, x, y, sample, set). They do not
-// depend on tile order, threads or SIMD width.
+// Random numbers of one sample of a tile. They are pure functions of (seed, frame, x, y, sample, set, depth),
+// and do not depend on tile order, threads or SIMD width.
 class Draws {
  public:
   Draws(std::uint64_t seed, const TileView& tile, int sample)
@@ -34,7 +34,8 @@ class Draws {
   template <class T>
   using Bits = stdx::rebind_simd_t<std::uint32_t, Lanes<T>>;
 
-  // Returns two numbers in [0, 1) for each of the slots, for paths of `depth` (camera rays: 0).
+  // Returns two numbers in [0, 1) for the path of each slot (index of its camera ray in the tile) at `depth`
+  // (0: camera rays).
   template <class T>
   [[gnu::always_inline]] SamplePoint<Lanes<T>> two(SampleSet set, int depth,
                                                    const IndexLanes<T>& slot) const {
@@ -42,13 +43,14 @@ class Draws {
     return {stdx::static_simd_cast<Lanes<T>>(point.u), stdx::static_simd_cast<Lanes<T>>(point.v)};
   }
 
-  // Returns a third number, stratified together with the two of two().
+  // Returns a third number, stratified together with those of two().
   template <class T>
   [[gnu::always_inline]] Lanes<T> third(SampleSet set, int depth, const IndexLanes<T>& slot) const {
     return stdx::static_simd_cast<Lanes<T>>(stratified_third(sample_, stream<T>(set, depth, slot)));
   }
 
-  // Fills `keys` with one random number per slot, for sorting slots into a random order for this sample.
+  // Fills `keys` with one random number per slot. Sorting by key gives a random order of the slots for this
+  // sample.
   void shuffle_keys(std::array<std::uint32_t, kBatch>& keys) const {
     for (std::uint32_t slot = 0; slot < keys.size(); ++slot)
       keys[slot] = combine_bits<std::uint32_t>(
@@ -56,7 +58,7 @@ class Draws {
           pixel_of(slot));
   }
 
-  // Returns the stratified_point() sequences that two() draws from; they are the same for every sample.
+  // Returns the streams that two() passes to stratified_point(). They are the same for every sample.
   template <class T>
   [[gnu::always_inline]] Bits<T> stream(SampleSet set, int depth, const IndexLanes<T>& slot) const {
     const std::uint32_t number =
@@ -67,7 +69,7 @@ class Draws {
   }
 
  private:
-  static constexpr int kRow = 65536;  // row length in the numbering of pixels
+  static constexpr int kRow = 65536;  // pixel number = kRow * y + x
 
   // Returns the pixel number of a slot: see tile_pixel().
   template <class N>
@@ -82,7 +84,7 @@ class Draws {
   std::uint32_t seed_, frame_, first_pixel_, sample_;
 };
 
-// Random numbers of the paths of a batch, by register.
+// Random numbers of the paths of a batch. two() returns those of the register that starts at path i.
 template <class T>
 struct PathDraws {
   const Draws& draws;

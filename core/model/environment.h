@@ -10,18 +10,19 @@ namespace orrery {
 
 class Params;
 
-// Environment light: radiance from infinitely far away, seen by rays that miss everything. Immutable and
+// Environment light: radiance from infinity, received by rays that miss everything. Immutable and
 // thread-safe.
 class Environment {
  public:
   virtual ~Environment() = default;
-  // Returns the radiance if it is the same in all directions. No kernel is made then.
+  // Returns the radiance if it is the same in all directions, otherwise nullopt. A constant environment needs
+  // no kernel.
   virtual std::optional<Vec3d> constant() const { return std::nullopt; }
   virtual Vec3d most() const = 0;  // largest radiance over all directions, per channel
-  // Returns true if importance sampling of its directions pays off.
+  // Returns true if directions should be importance-sampled.
   virtual bool sampled() const { return false; }
-  // Returns a kernel with one light, number 0. Only beyond() and, if sampled(), sample_each() return its
-  // light.
+  // Returns a kernel with one light, of index 0. Only beyond() and, if sampled(), sample_each() return light
+  // from it.
   virtual LightKernelPtr<float> kernel(float) const = 0;
   virtual LightKernelPtr<double> kernel(double) const = 0;
 };
@@ -29,7 +30,7 @@ class Environment {
 struct EnvironmentType {
   const char* name;
   const char* summary;
-  // Returns null after a problem, which `Params` records. Throws Cancelled.
+  // Returns null if the input is invalid. `Params` then records the problem. Throws Cancelled.
   std::shared_ptr<const Environment> (*read)(Params&, const AssetSource&);
 };
 

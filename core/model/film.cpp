@@ -17,7 +17,7 @@ void take_means(const TileSums& sums, TileMeans& means) {
       means[c].values[i] = static_cast<float>(sums.radiance[c][i] * share);
 }
 
-// Returns the number of non-finite pixels of the tile. Slots outside the picture are ignored.
+// Returns the number of non-finite pixels of the tile. Ignores pixels outside the image.
 std::uint64_t count_non_finite(const TileView& tile, const TileMeans& means) {
   bool all_finite = true;
   for (int i = 0; i < kBatch; i += kWidth<float>) {
@@ -32,7 +32,8 @@ std::uint64_t count_non_finite(const TileView& tile, const TileMeans& means) {
   return non_finite;
 }
 
-// Returns the slot of the first of four pixels in a row of a tile. Slots run in blocks of 4x4 pixels.
+// Returns the batch element of pixel (x, y) of a tile. REQUIRES: x is a multiple of 4. Elements are in blocks
+// of 4x4 pixels, so the next three elements are the next pixels of the row.
 std::size_t slot_of(int x, int y) {
   return static_cast<std::size_t>((y / 4 * (kTileSide / 4) + x / 4) * 16 + y % 4 * 4);
 }
@@ -47,7 +48,7 @@ void set_rows(const TileView& tile, const TileMeans& means, Image& image) {
   }
 }
 
-// Calls visit(pixel index in the picture, slot) for each pixel of the tile.
+// Calls visit(pixel index in the image, batch element) for each pixel of the tile.
 template <class Visit>
 void for_each_pixel(const TileView& tile, int width, const Visit& visit) {
   for (int y = 0; y < tile.height; ++y)

@@ -13,37 +13,37 @@ namespace orrery {
 
 // Storage format of a film.
 enum class FilmStorage {
-  srgb8,     // 3 bytes per pixel: sRGB-encoded when a tile ends
+  srgb8,     // 3 bytes per pixel: sRGB-encoded when a tile is stored
   linear32,  // 12 bytes per pixel: radiance as linear floats
-  sums       // 8 bytes per pixel, component and channel: double sums to which passes can be added
+  sums       // 8 bytes per pixel and sum: doubles, to which further passes can be added
 };
 
-// Sums over the samples of one tile, by slot, added in sample order.
+// Sums over the samples of one tile, one per batch element, added in sample order.
 struct TileSums {
   using Plane = std::array<double, kBatch>;
   struct Sums {
     std::array<Plane, 3> value;
-    Plane weight;  // number of samples that count
+    Plane weight;  // number of samples in `value`
   };
   std::array<Plane, 3> radiance;
   std::vector<Sums> channels;  // in the film's order
   int samples = 0;
 };
 
-// Mean radiance of one tile, by slot.
+// Mean radiance of one tile, one value per batch element and channel.
 using TileMeans = std::array<Array<float>, 3>;
 
-// Picture in progress: sums over samples, by channel. Different tiles may be stored by several threads at
-// once.
+// Accumulation buffer of a render: sums over samples, or the pixels of an image. Several threads may store
+// different tiles at once.
 class Film {
  public:
   // Creates an empty film. REQUIRES: `channels` is empty unless `storage` is FilmStorage::sums.
   Film(int width, int height, FilmStorage storage, std::span<const ChannelType* const> channels = {});
 
-  // Returns a copy. REQUIRES: FilmStorage::sums.
+  // REQUIRES: storage() is FilmStorage::sums.
   Film copy() const;
 
-  // Returns the memory size of such a film.
+  // Returns the size of the pixel data of such a film, in bytes.
   static std::size_t bytes(int width, int height, FilmStorage storage,
                            std::span<const ChannelType* const> channels);
 
@@ -52,22 +52,21 @@ class Film {
   FilmStorage storage() const { return storage_; }
   std::span<const ChannelType* const> channels() const { return channels_; }
 
-  // Stores the sums of the tile's pixels. Returns the number of pixels that are not finite.
+  // Stores the sums of the tile, or means computed from them. Returns the number of non-finite pixels.
   std::uint64_t put(const TileView& tile, const TileSums& sums);
-  // Stores means instead of sums. Returns the number of pixels that are not finite. REQUIRES: not
-  // FilmStorage::sums.
+  // Stores means. Returns the number of non-finite pixels. REQUIRES: storage() is not FilmStorage::sums.
   std::uint64_t put(const TileView& tile, const TileMeans& means);
-  // Loads the stored sums of the tile. REQUIRES: FilmStorage::sums; the tile was stored.
+  // Loads the stored sums of the tile. REQUIRES: storage() is FilmStorage::sums, and the tile was stored.
   void take(const TileView& tile, TileSums& sums) const;
 
-  // Returns the mean radiance in `format`. REQUIRES: all tiles were stored; an srgb8 film does not convert to
-  // linear32.
+  // Returns the mean radiance in `format`. REQUIRES: all tiles were stored. `format` is srgb8 if storage() is
+  // FilmStorage::srgb8.
   Image image(PixelFormat format) const;
-  // Returns the picture in its storage format. REQUIRES: not FilmStorage::sums.
+  // Returns the stored image. REQUIRES: storage() is not FilmStorage::sums.
   const Image& stored() const { return *image_; }
 
-  // Returns the mean of a channel component, row by row; pixels that every sample missed get
-  // ChannelType::nothing. REQUIRES: FilmStorage::sums.
+  // Returns the means of a channel component, row by row. The value of a pixel without hits is
+  // ChannelType::nothing. REQUIRES: storage() is FilmStorage::sums.
   std::vector<float> values(std::size_t channel, std::size_t component) const;
 
  private:

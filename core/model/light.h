@@ -5,8 +5,8 @@
 #include "core/model/draws.h"
 #include "core/model/rounding.h"
 
-// Lights. A scene keeps all lights of one type in a LightSet, in double precision. Each set makes a
-// LightKernel in the plan's number type, whose calls process whole batches.
+// Lights. A scene stores all lights of one type in a LightSet, in double precision. Each set creates a
+// LightKernel in the plan's number type. Kernel functions process whole batches.
 //
 // Convention: a white Lambert surface that faces a light of intensity 1 has radiance 1.
 namespace orrery {
@@ -16,15 +16,15 @@ class Params;
 // Incident light at every surface point of a batch.
 template <class T>
 struct LightBatch {
-  // Shadow rays. The light fills the unit direction toward it and t_max: metres to the light, infinity if
-  // directional, -1 if it sends no light here. Origins are set afterwards, on the side of the surface that
-  // the light comes from.
+  // Shadow rays. The kernel sets the unit direction toward the light and t_max: metres to the light, infinity
+  // if directional, or -1 if no light arrives. The caller sets the origins afterwards, on the side of the
+  // surface that the light comes from.
   RayBatch<T> shadow;
   // Radiance times the cosine at the light, divided by the sampling density and the selection probability.
-  // Point lights: intensity after attenuation and cone. Area lights also divide by pi, which cancels the
-  // factor pi of pi_bsdf_cos.
+  // Point lights: intensity after attenuation and cone. Area lights: also divided by pi, to cancel the factor
+  // pi of pi_bsdf_cos.
   Vec3Array<T> incident;
-  // Sampling density per solid angle times the selection probability; 0 for lights that no ray can hit.
+  // Sampling density per solid angle times the selection probability, or 0 for lights that no ray can hit.
   Array<T> pdf;
 };
 
@@ -48,26 +48,25 @@ class LightKernel {
  public:
   virtual ~LightKernel() = default;
 
-  // Samples a point of one light for every surface point of `groups`: fills direction, t_max and incident.
-  // sample_each() could replace it, but makes a picture 2.5 % slower if every light is evaluated.
+  // Samples a point of one light for every surface point of `groups`: sets direction, t_max and incident.
+  // sample_each() could replace this function, but rendering would take 2.5 % longer if every light is
+  // evaluated.
   virtual void sample(const SurfaceBatch<T>& surface, const LightChoice<T>& choice, const PathDraws<T>& draws,
                       const LaneGroups& groups, LightBatch<T>& out) const = 0;
 
-  // Samples a separate light for each surface point. Fills pdf as well, and only the lanes that have a light.
+  // Samples a separate light for each surface point. Also sets pdf. Sets only the lanes that have a light.
   virtual void sample_each(const SurfaceBatch<T>& surface, const LightChoices<T>& choices,
                            const PathDraws<T>& draws, const LaneGroups& groups, LightBatch<T>& out) const = 0;
 
-  // Computes the density per solid angle, times the selection probability, with which sample_each() draws the
-  // directions of `rays`, which hit the lights at `hits`. Fills the lanes that have a light; 0 for lights
-  // that no ray can hit.
+  // Computes LightBatch::pdf of sample_each() for the directions of `rays`, which hit the lights at `hits`.
+  // Sets the lanes that have a light. The result is 0 for lights that no ray can hit.
   virtual void pdf(const RayBatch<T>& /*rays*/, const HitBatch<T>& /*hits*/,
                    const LightChoices<T>& /*choices*/, const LaneGroups& groups, Array<T>& out) const {
     for (const int i : groups) out.put(i, Lanes<T>(T(0)));
   }
 
-  // Computes, for an extended light at infinity, the radiance along `rays` that miss everything. `pdf` is the
-  // density per solid angle, times the selection probability, with which sample_each() draws their
-  // directions.
+  // Computes the radiance that `rays`, which miss everything, receive from an extended light at infinity.
+  // `pdf` is LightBatch::pdf of sample_each() for their directions.
   virtual void beyond(const RayBatch<T>& /*rays*/, const LightChoice<T>& /*choice*/, const LaneGroups& groups,
                       Vec3Array<T>& radiance, Array<T>& pdf) const {
     for (const int i : groups) {
@@ -81,18 +80,18 @@ using LightKernelPtr = std::unique_ptr<LightKernel<T>>;
 
 // Properties of a light type that the plan uses.
 struct LightTraits {
-  bool delta = true;      // no ray can hit it; only sample() finds it
+  bool delta = true;      // no ray can hit it; only light sampling finds it
   bool parallel = false;  // same direction everywhere
 };
 
-// Rough unshadowed estimate of a light at a point, for light selection. A white surface facing the light, d
-// metres in front of the centre, has radiance strength * min(1, 1 / (c0 + c1 d + c2 d^2)). The estimate is
-// never 0 at a point that the light reaches.
+// Parameters of a rough estimate of the unshadowed light at a point, for light selection. A white surface
+// that faces the light, d metres from the centre, has radiance strength * min(1, 1 / (c0 + c1 d + c2 d^2)).
+// The estimate is never 0 at a point that the light reaches.
 struct LightBounds {
   Vec3d centre{};
-  double radius = 0;  // bounding sphere about the centre, metres
-  // Unit normal of a flat light, which emits on both sides with the cosine; 0 for lights that emit in all
-  // directions.
+  double radius = 0;  // radius of the bounding sphere about `centre`, metres
+  // Unit normal of a flat light, which emits on both sides in proportion to the cosine. 0 for lights that
+  // emit in all directions.
   Vec3d normal{};
   double strength = 0;         // in the brightest channel
   Vec3d attenuation{1, 0, 0};  // c0, c1, c2
@@ -109,20 +108,20 @@ class LightSet {
   virtual LightTraits traits() const = 0;
   virtual Vec3d intensity(int index) const = 0;  // at the source, per channel
   virtual LightBounds bounds(int index) const = 0;
-  // Returns an upper bound of LightBatch::incident at `distance` metres or more from the centre of the
-  // bounds, per channel. Treats the light as one point or direction. Infinite if unbounded.
+  // Returns an upper bound on LightBatch::incident at `distance` metres or more from the centre of the
+  // bounds, per channel. Treats the light as one point or direction. Infinite if there is no bound.
   virtual Vec3d max_incident(int index, double distance) const = 0;
-  // Returns the largest radiance that rays which miss everything can receive from the light.
+  // Returns the largest radiance that the light adds to rays that miss everything, per channel.
   virtual Vec3d max_radiance_at_infinity(int /*index*/) const { return Vec3d(0); }
   virtual RoundingLimit rounding(int /*index*/) const { return {}; }
-  // Returns true if sample_each() samples the extent of the light. sample() treats the light as one point or
-  // direction.
+  // Returns true if sample_each() samples points or directions over the extent of the light. sample() always
+  // treats the light as one point or direction.
   virtual bool extended(int /*index*/) const { return false; }
   virtual LightKernelPtr<float> kernel(float) const = 0;
   virtual LightKernelPtr<double> kernel(double) const = 0;
 };
 
-// Light of a scene: index of its type in the registry, and its number within the set.
+// Location of a light in a scene: the index of its type in the registry, and its index within the set.
 struct LightPlace {
   std::size_t set;
   int index;

@@ -6,13 +6,13 @@
 #include "core/model/draws.h"
 #include "core/model/rounding.h"
 
-// Materials. A scene keeps all materials of one type in a MaterialSet and makes a kernel of them in the
-// plan's number type. Radiance and coefficients are linear, per channel.
+// Materials. A scene stores all materials of one type in a MaterialSet, which creates a kernel in the plan's
+// number type. Radiance and coefficients are linear, per channel.
 namespace orrery {
 
 class Params;
 
-// Perfectly specular scattering: weights of the mirrored and the refracted ray (0: none), and the direction
+// Perfectly specular scattering: weights of the mirrored and the refracted ray (0: no ray), and the direction
 // of the refracted ray. `filter` is the transmittance of the body between the previous surface and this one.
 template <class T>
 struct SpecularBatch {
@@ -42,30 +42,30 @@ struct ScatterBatch {
   Array<T> pdf;            // density per solid angle; 0 for perfectly specular directions
 };
 
-// Scattering functions of all materials of one type. Immutable and thread-safe. `lobes` includes at least one
-// lobe that the traits of the materials have.
+// Scattering functions of all materials of one type. Immutable and thread-safe. REQUIRES: `lobes` includes at
+// least one lobe of the traits of these materials.
 template <class T>
 class MaterialKernel {
  public:
   virtual ~MaterialKernel() = default;
 
-  // Sets `radiance` to the light that leaves the surface under `ambient` light alone, for the lanes with this
-  // material.
+  // Sets `radiance` to the light that the surface reflects under `ambient` light alone, for the lanes with
+  // these materials.
   virtual void ambient(const RayBatch<T>&, const SurfaceBatch<T>&, const LaneGroups&, Lobes,
                        const Vec3<T>& /*ambient*/, Vec3Array<T>& /*radiance*/) const {}
 
-  // Evaluates scattering from `directions.light` toward the ray's origin. `pi_bsdf_cos` is the BSDF times
-  // cosine times pi, per channel (a white Lambert surface: the cosine). `pdf` is the density per solid angle
-  // with which sample() draws the direction. Sets only the lanes with this material. If nothing is reflected,
-  // pdf is 0 and pi_bsdf_cos is undefined.
+  // Evaluates scattering from `directions.light` toward the ray's origin. `pi_bsdf_cos` is pi times the BSDF
+  // times the cosine, per channel. For a white Lambert surface, it is the cosine. `pdf` is the density per
+  // solid angle with which sample() samples the direction. Sets only the lanes with these materials. If
+  // nothing is scattered, `pdf` is 0 and `pi_bsdf_cos` is undefined.
   virtual void evaluate(const Directions<T>&, const SurfaceBatch<T>&, const LaneGroups&, Lobes,
                         Vec3Array<T>& /*pi_bsdf_cos*/, Array<T>& /*pdf*/) const {}
 
-  // Samples one direction of incident light, for the lanes with this material.
+  // Samples one direction of incident light, for the lanes with these materials.
   virtual void sample(const RayBatch<T>&, const HitBatch<T>&, const SurfaceBatch<T>&, const PathDraws<T>&,
                       const LaneGroups&, Lobes, ScatterBatch<T>&) const {}
 
-  // Computes both directions of a perfectly specular material, for the lanes with this material.
+  // Computes perfectly specular reflection and refraction, for the lanes with these materials.
   virtual void specular(const RayBatch<T>&, const HitBatch<T>&, const SurfaceBatch<T>&, const LaneGroups&,
                         SpecularBatch<T>&) const {}
 };
@@ -73,15 +73,16 @@ class MaterialKernel {
 template <class T>
 using MaterialKernelPtr = std::unique_ptr<MaterialKernel<T>>;
 
+// Traits of one material, or the union over several.
 struct MaterialTraits {
-  bool lit = false;           // has light sources: `ambient` and `evaluate` apply
+  bool lit = false;           // scatters light from light sources: `ambient` and `evaluate` apply
   bool mirrors = false;       // `specular` may have reflectance
   bool transmits = false;     // `specular` may have transmittance, `evaluate` may have light from behind
   bool filters = false;       // the body may absorb light
-  bool glossy = false;        // some are lit, but their radiance may depend on the view
-  bool diffuse = false;       // some have a diffuse lobe
-  bool non_diffuse = false;   // some have a non-diffuse lobe
-  bool emits = false;         // some surface with it emits light
+  bool glossy = false;        // lit, with a radiance that may depend on the view direction
+  bool diffuse = false;       // has a diffuse lobe
+  bool non_diffuse = false;   // has a non-diffuse lobe
+  bool emits = false;         // a surface with the material emits light
   SurfaceFields fields = {};  // read by `evaluate` and `sample`
 
   MaterialTraits& operator|=(const MaterialTraits& other) {
@@ -97,14 +98,14 @@ struct MaterialTraits {
     return *this;
   }
 
-  // Returns true if some material may have one of these lobes.
+  // Returns true if a material may have one of these lobes.
   bool has(Lobes lobes) const {
     return lobes == Lobes::all || (lobes == Lobes::diffuse ? diffuse : non_diffuse);
   }
 };
 
-// Upper bounds of the light that a surface scatters, per channel, over all directions. If a material also
-// mirrors a share R, `ambient` and `light` are the bounds at R = 0. At most 1 - R of them then applies.
+// Upper bounds on the light that a surface scatters, per channel, over all directions. If a material also
+// mirrors a fraction R of the light, `ambient` and `light` are bounds for R = 0, to be multiplied by 1 - R.
 struct ReflectionLimits {
   Vec3d ambient{1.0};                                    // for ambient light
   Vec3d light{std::numeric_limits<double>::infinity()};  // pi_bsdf_cos of MaterialKernel::evaluate()
@@ -121,10 +122,10 @@ class MaterialSet {
   virtual int size() const = 0;
   virtual MaterialTraits traits() const = 0;  // union over the set
   virtual RoundingLimit rounding(int /*index*/) const { return {}; }
-  // Returns the largest mirrored share of light along the normal.
+  // Returns the largest fraction of light that is mirrored along the normal.
   virtual double mirrored_share(int /*index*/) const { return 0; }
-  // Returns the largest albedo over views and channels, to within 0.01. Above 1 the material creates energy.
-  // 1 if its formula cannot create energy.
+  // Returns 1 if the formula cannot create energy. Otherwise returns the largest albedo over view directions
+  // and channels, to within 0.01. If it is above 1, the material creates energy.
   virtual double max_albedo(int /*index*/) const { return 1; }
   virtual ReflectionLimits limits(int /*index*/) const { return {}; }
   // Returns a kernel whose materials are numbered from `first`.

@@ -6,10 +6,10 @@
 #include "core/model/batch.h"
 
 // Rays for traversal: one ray (SingleRay), or a register of similar rays that are traversed together
-// (Packet). Both carry values that intersection tests share, computed once per ray.
+// (Packet). Both store values that intersection tests need and that are computed once per ray.
 namespace orrery {
 
-// Work counters of a structure: tests of single rays, independent of SIMD width.
+// Counters of an acceleration structure. Tests are counted per ray, independently of SIMD width.
 struct AcceleratorCounts {
   std::uint64_t node_visits = 0;  // by a ray or by a packet
   std::uint64_t box_tests = 0;
@@ -26,7 +26,7 @@ struct AcceleratorCounts {
   }
 };
 
-// Axes of a ray as masks: z is the direction's largest component; x and y follow cyclically.
+// Axes of a ray as masks. z is the axis of the largest component of the direction. x and y follow cyclically.
 template <class N>
 struct RayAxes {
   MaskOf<N> z_is_x, z_is_y, z_is_z;
@@ -73,13 +73,13 @@ struct Packet {
   Ray<Lanes<T>> ray;
   std::array<int, 3> axis;  // the same for all active rays
   Shear<Lanes<T>> shear;
-  // Common origin of the active rays, if one_origin, and the ranges of shear.x and shear.y.
+  // Common origin of the active rays (valid if one_origin), and the ranges of shear.x and shear.y.
   bool one_origin;
   Vec3<T> origin;
   std::array<T, 2> shear_lo, shear_hi;
 };
 
-// Nearest hit so far. t starts as the ray's t_max, primitive as kNoPrimitive. t is -1 if the ray is occluded.
+// Nearest known hit. Initially, t is t_max and primitive is kNoPrimitive. t is -1 if the ray is occluded.
 template <class T>
 struct SingleHit {
   T t;
@@ -93,7 +93,7 @@ struct PacketHit {
   Lanes<T> t;
   IndexLanes<T> primitive;
   T farthest;  // largest t
-  int budget;  // remaining tests of blocks and primitives; below 0 the packet stops
+  int budget;  // remaining tests of blocks and primitives; below 0, traversal of the packet stops
 
   T limit() const { return budget < 0 ? T(-1) : farthest; }
 };

@@ -5,18 +5,18 @@
 
 namespace orrery {
 
-// Path vertices in flight: rays of one depth, each with the slot of the camera batch that receives its light.
-// The slot determines the pixel and, with the batch's Draws, the sample.
+// Rays of one depth. `slot` is the index of the camera ray to which the light of a ray contributes. It
+// determines the pixel and, with the Draws of the batch, the sample.
 template <class T>
 struct PathBatch {
   RayBatch<T> rays;
-  Vec3Array<T> throughput;  // share of the ray's radiance that reaches the slot, per channel
+  Vec3Array<T> throughput;  // weight of the radiance of the ray in that of the camera ray, per channel
   Array<IndexOf<T>> slot;
-  // With SurfaceFields::footprint: pixel width in metres across the ray at its origin, and its growth per
-  // metre.
+  // Pixel width in metres across the ray at its origin, and its growth per metre along the ray. Filled only
+  // with SurfaceFields::footprint.
   Array<T> width, spread;
-  // Density per solid angle with which the ray's direction was sampled; 0 for perfectly specular directions.
-  // Filled only by techniques that sample directions, and not for camera rays.
+  // Density per solid angle with which the ray's direction was sampled, or 0 for perfectly specular
+  // directions. Filled only by techniques that sample directions. Not filled for camera rays.
   Array<T> pdf;
   int depth = 0;  // 0: camera rays
 
@@ -37,19 +37,19 @@ struct PathBatch {
     rays.count = n + std::popcount(bits);
     return bits;
   }
-  // Sets the footprint of the rays appended last, those of `bits`.
+  // Sets the footprints of the last appended rays. `bits` is the result of their append().
   void append_footprint(unsigned bits, const Lanes<T>& widths, const Lanes<T>& spreads) {
     const int n = rays.count - std::popcount(bits);
     compress_store(widths, bits, &width[n]);
     compress_store(spreads, bits, &spread[n]);
   }
 
-  // Sets the density of the rays appended last, those of `bits`.
+  // Sets the densities of the last appended rays. `bits` is the result of their append().
   void append_pdf(unsigned bits, const Lanes<T>& pdfs) {
     compress_store(pdfs, bits, &pdf[rays.count - std::popcount(bits)]);
   }
 
-  // Sets t_max of every ray to infinity, and fills the last register with harmless inactive rays.
+  // Sets t_max of every ray to infinity, and fills up the last register with inactive rays.
   void seal() {
     using N = Lanes<T>;
     for (int i = 0; i < rays.count; i += kWidth<T>) rays.t_max.put(i, N(std::numeric_limits<T>::infinity()));
@@ -63,7 +63,8 @@ struct PathBatch {
     }
   }
 
-  // Appends the rays of `other`, with their footprints if `footprints`. REQUIRES: the rays fit.
+  // Appends the rays of `other`, with their footprints if `footprints`, but without `pdf`. REQUIRES: both
+  // batches together have at most kBatch rays.
   void append(const PathBatch& other, bool footprints) {
     const auto copy = [&](auto& to, const auto& from) {
       std::copy_n(from.values.begin(), other.rays.count, to.values.begin() + rays.count);

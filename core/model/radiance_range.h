@@ -6,7 +6,7 @@
 
 namespace orrery {
 
-// Range of all radiance in a scene, per channel. `most` is infinite if no limit is known.
+// Range of all radiance in a scene, per channel. `most` is infinite if no bound is known.
 struct RadianceRange {
   Vec3d least{0.0}, most{std::numeric_limits<double>::infinity()};
 

@@ -7,8 +7,8 @@
 #include "core/model/batch.h"
 
 // Records: structs with only numeric members, written once as `template <class N> struct Sphere { Vec3<N>
-// center; N radius; ... }`. The same struct holds one shape in double precision as read, one in the render's
-// precision, or lanes of shapes. Lanes hold the same shape, or a different one each.
+// center; N radius; ... }`. The same struct stores one shape in double precision as read, one shape in the
+// render's precision, or one shape per lane. All lanes may store the same shape.
 namespace orrery {
 
 template <template <class> class Record, class N>
@@ -52,8 +52,8 @@ Record<Lanes<T>> gather_records(const Table& table, const IndexLanes<T>& index, 
 }
 
 // Returns table[index[i]] in lane i if `mask` is set, else any valid record. REQUIRES: any(mask). Rays of one
-// register mostly hit the same primitive, so this case is a broadcast. `table` is a span or another type that
-// returns a Record<T> for an index.
+// register mostly hit the same primitive. A broadcast suffices then. `table` is a span or another type whose
+// operator[] returns a Record<T>.
 template <template <class> class Record, class T, class Table>
 [[gnu::always_inline]] inline Record<Lanes<T>> fetch_records(const Table& table, const IndexLanes<T>& index,
                                                              const MaskOf<Lanes<T>>& mask) {

@@ -12,18 +12,18 @@
 
 namespace orrery {
 
-// Number type of rays, and the option's names.
+// Number type of rays, and the names of the choices.
 enum class Precision { automatic, single_precision, double_precision };
 inline constexpr std::array<std::string_view, 3> kPrecisions{"auto", "float", "double"};
 
-// Predictor of occluders for shadow rays, used before traversal, and the option's names.
+// Predictor of occluders for shadow rays, used before traversal, and the names of the choices.
 enum class Prediction { none, network, last, random };
 inline constexpr std::array<std::string_view, 4> kPredictions{"none", "network", "last", "random"};
 inline constexpr std::string_view name_of(Prediction prediction) {
   return kPredictions[static_cast<std::size_t>(prediction)];
 }
 
-// Reconstruction filter of a pixel's samples, and the option's names.
+// Reconstruction filter for the samples of a pixel, and the names of the choices.
 enum class Filter { box, gaussian, blackman_harris, mitchell, lanczos };
 inline constexpr std::array<std::string_view, 5> kFilters{"box", "gaussian", "blackman-harris", "mitchell",
                                                           "lanczos"};
@@ -31,22 +31,22 @@ inline constexpr std::string_view name_of(Filter filter) {
   return kFilters[static_cast<std::size_t>(filter)];
 }
 
-// Error metric, and the option's names. linear: radiance. display: sRGB-encoded, 0 to 1. automatic: the space
-// of the output format.
+// Space in which errors are measured, and the names of the choices. linear: radiance. display: sRGB-encoded,
+// 0 to 1. automatic: the space of the output format.
 enum class Space { automatic, linear, display };
 inline constexpr std::array<std::string_view, 3> kSpaces{"auto", "linear", "display"};
 inline constexpr std::string_view name_of(Space space) { return kSpaces[static_cast<std::size_t>(space)]; }
 
-// Result of a missed budget, and the option's names: the best picture so far, or an error.
+// Result if a budget is missed, and the names of the choices: the best image so far, or an error.
 enum class OnMiss { best, fail };
 inline constexpr std::array<std::string_view, 2> kOnMisses{"best", "fail"};
 
-// Output, and the option's names: the picture, or an error bound for each pixel.
+// Output, and the names of the choices: the image, or an error bound for each pixel.
 enum class View { picture, bound };
 inline constexpr std::array<std::string_view, 2> kViews{"picture", "bound"};
 
-// Values of the render options, one member per option. The table in core/plan/options.h gives names, ranges
-// and defaults. Options that were not given are nullopt.
+// Values of the render options, one member per option. The table in core/plan/options.cpp defines names,
+// ranges and defaults. An option that is not set is nullopt.
 struct RenderSettings {
   std::optional<double> azimuth_degrees, elevation_degrees, distance;  // camera position; see Orbit
   std::optional<Vec3d> pan;                                            // metres
@@ -58,7 +58,7 @@ struct RenderSettings {
   std::optional<int> samples;  // per pixel
   std::optional<Filter> filter;
   std::optional<double> filter_width;    // pixels
-  std::optional<int> reuse;              // paths per group
+  std::optional<int> reuse;              // maximum number of paths per group
   std::optional<double> clamp_indirect;  // radiance; 0: no limit
   std::optional<std::string> accelerator;
   std::optional<Precision> precision;
@@ -68,7 +68,7 @@ struct RenderSettings {
   std::optional<double> time, shutter;             // seconds
   std::optional<std::vector<std::string>> layers;  // film channels in addition to radiance
   std::optional<View> view;
-  // Budgets of one picture; 0: none. Errors are root-mean-square.
+  // Budgets of one image: root-mean-square error, and time in seconds. 0: no budget.
   std::optional<double> error, seconds;
   std::optional<Space> space;
   std::optional<OnMiss> on_miss;

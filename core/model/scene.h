@@ -21,47 +21,48 @@
 
 namespace orrery {
 
-// Extreme value of a scene, in metres for lengths, and the JSON Pointer of its object.
+// Extreme value in a scene, in metres if it is a length, and the JSON Pointer of the object that has it.
 struct LocatedValue {
   double value;
   std::string where;
 };
 
-// Mirrors that reflect each other's rays: position errors grow with each reflection.
+// Curved mirrors that reflect rays to each other. Position errors grow with each reflection.
 struct MirrorChain {
-  double growth = 1;  // position error per reflection, times the share of light
+  double growth = 1;  // error growth per reflection, weighted by the reflected light
   double radius = std::numeric_limits<double>::infinity();  // radius of curvature, metres
   std::string where;
 };
 
-// Scene properties for the plan, computed once.
+// Properties of the scene that the plan uses, computed once.
 struct SceneFacts {
   MaterialTraits materials;                                          // union over the materials in use
   std::size_t left_out = 0;                                          // primitives without area
   Boundsd bounds;                                                    // bounded primitives only
   bool unbounded = false;                                            // some primitive is unbounded
-  RadianceRange tree_radiance, distributed_radiance, path_radiance;  // by kind of technique
+  RadianceRange tree_radiance, distributed_radiance, path_radiance;  // one per kind of technique
   Vec3d albedo;                                                      // largest albedo of a material in use
-  // Inputs to the choice of the number type:
+  // The members below are inputs to the choice of the number type.
+  //
   // Largest absolute coordinate, including the anchors of unbounded primitives.
   LocatedValue magnitude{0, ""};
-  // Smallest diagonal of a bounded primitive's box, and smallest distance between two layers: the sides of
-  // one body or the surfaces of two. Infinite if there are none.
+  // Smallest diagonal of the box of a bounded primitive, and smallest distance between two parallel surfaces,
+  // of one body or of two. Infinite if there are none.
   LocatedValue smallest_feature{std::numeric_limits<double>::infinity(), ""},
       layer_distance{std::numeric_limits<double>::infinity(), ""};
   MirrorChain mirrors;
   LocatedValue max_albedo{1, ""};  // largest albedo of a material in use, and its object
-  RoundingLimit rounding;          // strictest limit of lights and materials; `reason` names it
+  RoundingLimit rounding;          // strictest limit of all lights and materials; `reason` states where
 };
 
-// Returns the number of primitives of all sets.
+// Returns the total number of primitives in the sets.
 inline std::size_t count_primitives(const std::vector<std::unique_ptr<ShapeSet>>& sets) {
   std::size_t count = 0;
   for (const auto& shapes : sets) count += static_cast<std::size_t>(shapes->size());
   return count;
 }
 
-// Shapes that instances place.
+// Shapes that one or more instances place in the scene.
 struct Model {
   std::vector<std::unique_ptr<ShapeSet>> shapes;
   std::vector<std::int32_t> material_of;  // by primitive
@@ -92,21 +93,21 @@ struct Instance {
   }
 };
 
-// Time from the first key of all moving objects to the last, in seconds; empty if nothing moves.
+// Time from the first to the last key of all moving objects, in seconds. Empty if nothing moves.
 struct TimeSpan {
   double first = 0, last = 0;
 
   bool empty() const { return !(first < last); }
-  // Returns the time at which an exposure of `seconds` sees the same scene as at `time`, clamped to the
-  // motion.
+  // Returns `time` clamped to [first - seconds, last], or `first` if nothing moves. An exposure of `seconds`
+  // records the same image at both times.
   double moment(double time, double seconds = 0) const {
     return empty() ? first : std::clamp(time, first - seconds, last);
   }
-  // Returns true if something may move during the exposure.
+  // Returns true if an object may move during the exposure.
   bool within(const Exposure& exposure) const {
     return !empty() && !exposure.instant() && exposure.opens < last && exposure.closes > first;
   }
-  // Returns the equivalent time if the motion repeats after its end.
+  // Returns the equivalent time within the motion if the motion repeats.
   double moment_of_loop(double time) const {
     const double held = moment(time);
     if (empty() || held == time) return held;
@@ -120,27 +121,27 @@ struct ObjectRun {
   std::int32_t first_primitive, object;
 };
 
-// Scene as read, in double precision; immutable and shared between threads. Primitives are numbered set by
-// set in the order of `shapes`; materials in the order of `materials`. Object numbers follow the scene file:
-// `objects` first, then `instances`.
+// Scene as read, in double precision. Immutable and shared between threads. Primitives are numbered set by
+// set in the order of `shapes`, materials in the order of `materials`. Objects are numbered as in the scene
+// file: `objects` first, then `instances`.
 struct Scene {
   std::string id;  // SHA-256 of the canonical JSON
   std::string canonical;
   std::string title, description;
   CameraPlacement placement;
   std::shared_ptr<const Camera> camera;
-  RenderSettings render;  // options that scenes may give, with defaults
+  RenderSettings render;  // options that a scene may set, or their defaults
   Vec3d ambient, background;
   std::shared_ptr<const Environment> environment;  // replaces the background, which is then 0; may be null
   std::vector<std::unique_ptr<ShapeSet>> shapes;
   std::vector<std::unique_ptr<MaterialSet>> materials;
-  std::vector<Vec3d> emission;  // by material: radiance emitted on both sides
+  std::vector<Vec3d> emission;  // per material: radiance emitted on both sides
   std::vector<std::unique_ptr<LightSet>> light_sets;
   std::vector<LightPlace> lights;  // in file order
   std::deque<Model> models;
-  std::vector<Instance> instances;        // primitives numbered after those of `shapes`
+  std::vector<Instance> instances;        // their primitives are numbered after those of `shapes`
   std::vector<std::int32_t> material_of;  // by primitive
-  std::vector<ObjectRun> object_runs;     // ascending; each ends at the next
+  std::vector<ObjectRun> object_runs;     // in ascending order; each ends where the next begins
   int object_count = 0;
   TimeSpan motion;
   SceneFacts facts;

@@ -11,8 +11,8 @@
 #include "core/model/asset_source.h"
 #include "core/model/packet.h"
 
-// Shapes. A scene keeps all shapes of one type in a ShapeSet, in double precision. For rendering, each set
-// makes a ShapeKernel in the plan's number type, whose calls process whole batches.
+// Shapes. A scene stores all shapes of one type in a ShapeSet, in double precision. For rendering, each set
+// creates a ShapeKernel in the plan's number type. Kernel functions process whole batches.
 namespace orrery {
 
 class Params;
@@ -20,24 +20,24 @@ class Params;
 // Surface of one shape at one hit.
 template <class N>
 struct Surface {
-  Vec3<N> position;   // on the shape, to the last few ulp
+  Vec3<N> position;   // on the shape, to within a few ulp
   Vec3<N> geometric;  // outward unit normal
   Vec3<N> normal;     // outward unit normal for shading
-  N magnitude;        // largest absolute coordinate near the hit: the scale of rounding
+  N magnitude;        // largest absolute coordinate near the hit, the scale of rounding errors
 };
 
 // Parameters of one hit on its shape.
 template <class N>
 struct SurfacePoint {
-  N u, v;           // the shape's own parameters
+  N u, v;           // parameters of the shape
   N s, t;           // texture coordinates
   Vec3<N> tangent;  // unit, direction of increasing s, perpendicular to the geometric normal
 };
 
 // Primitives of one kernel in traversal order, in blocks of kBlock<T>. A packet is tested with one primitive
-// at a time, a single ray with a whole block. Hits and ties equal those of ShapeKernel::closest() bit for
-// bit. A call processes the pairs in order; each pair indexes `rays` or `packets`, and `hits`. Immutable and
-// thread-safe.
+// at a time, a single ray with a whole block. Hits, including ties, equal those of ShapeKernel::closest() bit
+// for bit. A call processes the pairs in order. Each pair indexes `rays` or `packets`, and `hits`. Immutable
+// and thread-safe.
 template <class T>
 class PackedPrimitives {
  public:
@@ -54,7 +54,7 @@ class PackedPrimitives {
   virtual void occlude(RayBlockPairs pairs, const Packet<T>* packets, PacketHit<T>* hits,
                        AcceleratorCounts& counts) const = 0;
 
-  // Prefetches a block into the CPU cache. Does nothing if prefetching does not pay off.
+  // Prefetches a block into the CPU cache. Does nothing for types that do not gain from it.
   virtual void prefetch(std::uint32_t /*block*/) const {}
 
   virtual std::size_t bytes() const = 0;
@@ -64,9 +64,9 @@ class PackedPrimitives {
 template <class T>
 using PackedPrimitivesPtr = std::shared_ptr<const PackedPrimitives<T>>;
 
-inline constexpr int kNothing = -1;  // empty entry of a block
+inline constexpr int kNothing = -1;  // index of an empty entry of a block
 
-// Corners of a triangle of a hull.
+// Corners of one triangle of a hull.
 using HullTriangle = std::array<Vec3d, 3>;
 
 // Intersection functions of all shapes of one type. Immutable and thread-safe.
@@ -76,32 +76,32 @@ class ShapeKernel {
   virtual ~ShapeKernel() = default;
 
   // Tests primitive `index` of this set against the rays of `groups`. A hit in (0, hits.t) replaces the
-  // previous one; equal t keeps the lower primitive number. Counts tests within the primitive, not the
-  // primitive itself.
+  // previous hit. At equal t, the lower primitive number wins. `counts` includes tests inside an instance,
+  // but not the test of the primitive itself.
   virtual void closest(int index, const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits,
                        AcceleratorCounts& counts) const = 0;
 
-  // Sets t_max to -1 for the rays of `groups` that hit primitive `index` in (0, t_max). Counts like
-  // closest().
+  // Sets t_max to -1 for the rays of `groups` that hit primitive `index` in (0, t_max). Counts tests as
+  // closest() does.
   virtual void occlude(int index, RayBatch<T>& rays, const LaneGroups& groups,
                        AcceleratorCounts& counts) const = 0;
 
-  // Returns a surface whose convex hull contains a bounded primitive, except for rounding. Returns an empty
-  // list if the axis-aligned box is as tight.
+  // Returns triangles whose convex hull contains a bounded primitive, up to rounding. Returns an empty list
+  // if the axis-aligned box is as tight.
   virtual std::vector<HullTriangle> hull(int index) const = 0;
 
-  // Returns true if the primitives move with the rays' time.
+  // Returns true if the primitives depend on the time of the ray.
   virtual bool timed() const { return false; }
 
-  // Packs the primitives with these indices in this order; kNothing marks an empty entry. The result does not
-  // refer to the kernel. REQUIRES: `indices` fill whole blocks, no block is empty, and !timed().
+  // Packs the primitives with these indices in this order. The index kNothing is an empty entry. The result
+  // may outlive the kernel. REQUIRES: `indices` fill whole blocks, no block is empty, and !timed().
   virtual PackedPrimitivesPtr<T> pack(std::span<const int> indices) const = 0;
 
   // Fills the surface of every hit in `groups` on this set. Other lanes are unchanged.
   virtual void surface(const RayBatch<T>& rays, const HitBatch<T>& hits, const LaneGroups& groups,
                        SurfaceBatch<T>& out) const = 0;
 
-  // Fills u and v of hits and surfaces, and the tangent; other lanes are unchanged. REQUIRES: surface() was
+  // Fills u and v of hits and surfaces, and the tangent. Other lanes are unchanged. REQUIRES: surface() was
   // called before.
   virtual void parameters(const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits,
                           SurfaceBatch<T>& out) const = 0;
@@ -112,11 +112,11 @@ using ShapeKernelPtr = std::shared_ptr<const ShapeKernel<T>>;
 
 // Properties of a shape type that the plan uses.
 struct ShapeTraits {
-  bool convex = false;  // convex or flat: it cannot shadow or mirror itself outside
+  bool convex = false;  // convex or flat: its outside cannot shadow or reflect itself
   bool closed = false;  // has an inside
 };
 
-// Surface that light sampling can draw points from.
+// Surface on which light sampling can choose points.
 struct Patch {
   enum class Kind { rectangle, triangle, disk, sphere, box, cylinder } kind;
   // Rectangle: a corner and two perpendicular sides. Triangle: a corner and two sides. Disk: centre and two
@@ -130,10 +130,9 @@ class MovingShapes {
  public:
   virtual ~MovingShapes() = default;
 
-  // Returns the bounds of the whole motion, as seen by rays of either precision. REQUIRES: the primitive
-  // moves.
+  // Returns the bounds over the whole motion, valid for float and double rays. REQUIRES: the primitive moves.
   virtual Boundsd bounds(int index) const = 0;
-  // Returns a timed kernel of the moving primitives, which keep their numbers in the set, counted from
+  // Returns a timed kernel of the moving primitives. They keep their numbers within the set, counted from
   // `first`.
   virtual ShapeKernelPtr<float> kernel(float, int first) const = 0;
   virtual ShapeKernelPtr<double> kernel(double, int first) const = 0;
@@ -146,20 +145,20 @@ class ShapeSet {
  public:
   virtual ~ShapeSet() = default;
 
-  // Reads one object. Returns the number of primitives added.
+  // Reads one object. Returns the number of added primitives.
   virtual int add(Params& params, MeshSource& meshes) = 0;
   virtual int size() const = 0;
-  // Returns the number of primitives left out because no ray can hit them.
+  // Returns the number of primitives omitted because no ray can hit them.
   virtual std::size_t left_out() const { return 0; }
-  // Returns the times of the animation keys, in seconds; empty if the set is static.
+  // Returns the times of the animation keys, in seconds. Returns an empty list if the set is static.
   virtual std::vector<double> key_times() const { return {}; }
   // Returns the same primitives in the same order at `time`, or null if the set is static.
   virtual std::unique_ptr<ShapeSet> at(double /*time*/) const { return nullptr; }
-  // Returns the primitives that move during an exposure longer than an instant, or null if none moves. The
-  // result refers to the set.
+  // Returns the primitives that move during an exposure that is not an instant, or null if none moves. The
+  // result must not outlive the set.
   virtual std::unique_ptr<MovingShapes> during(const Exposure&) const { return nullptr; }
   virtual bool moves(int /*index*/) const { return false; }
-  // Returns bounds with infinite sides for unbounded primitives.
+  // Returns the bounds of a primitive. Unbounded primitives have infinite sides.
   virtual Boundsd bounds(int index) const = 0;
   // Bounds of the primitive over its whole motion, and the smallest diagonal of its box at any key.
   struct SweptBounds {
@@ -170,13 +169,14 @@ class ShapeSet {
     const Boundsd box = bounds(index);
     return {box, box.diagonal()};
   }
-  // Returns the largest absolute coordinate of the anchor of an unbounded primitive; 0 for bounded ones.
+  // Returns the largest absolute coordinate of the anchor of an unbounded primitive, or 0 if the primitive is
+  // bounded.
   virtual double anchor_magnitude(int /*index*/) const { return 0; }
   virtual ShapeTraits traits() const = 0;
   // Returns the primitive's whole surface, or nullopt if light cannot be sampled from it.
   virtual std::optional<Patch> patch(int /*index*/) const { return std::nullopt; }
 
-  // Returns a kernel whose primitives are numbered from `first`. It does not refer to the set.
+  // Returns a kernel whose primitives are numbered from `first`. The kernel may outlive the set.
   virtual ShapeKernelPtr<float> kernel(float, int first) const = 0;
   virtual ShapeKernelPtr<double> kernel(double, int first) const = 0;
   virtual ShapeKernelPtr<long double> kernel(long double, int first) const = 0;

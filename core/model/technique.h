@@ -11,34 +11,36 @@
 
 namespace orrery {
 
-// Result of one batch of camera rays, by slot; not averaged or clamped.
+// Result of one batch of camera rays. Only indirect radiance is clamped: see Plan::clamp_indirect.
 template <class T>
 struct TraceResult {
   Vec3Array<T> radiance;
-  // Upper bound of the change of radiance by untraced rays, per channel: their weight times Plan::cut_range.
+  // Upper bound on the radiance error of untraced rays, per channel: their weight times Plan::cut_range.
   Vec3Array<T> omitted;
-  Vec3Array<T> clamped;                   // radiance removed by Plan::clamp_indirect, if that is above 0
+  Vec3Array<T> clamped;  // radiance removed by clamping; filled only if Plan::clamp_indirect > 0
   std::vector<ChannelBatch<T>> channels;  // in the order of Plan::channels
 };
 
-inline constexpr int kMaxEmissionSamples =
-    16;  // maximum emission-only rays per sample: see Tracer::has_emission_pass()
+// Maximum number of emission-only camera rays per sample: see Tracer::has_emission_pass().
+inline constexpr int kMaxEmissionSamples = 16;
 
-// Light transport algorithm. A tracer belongs to one thread and is reused, together with its batches.
+// Light transport algorithm. A tracer is not thread-safe. It keeps its batches between calls, so a thread
+// should reuse its tracer.
 template <class T>
 class Tracer {
  public:
   virtual ~Tracer() = default;
-  // Traces the camera rays to the end. Slots of inactive rays get the background. `draws` holds the random
-  // numbers of the slots. Polls `checkpoint`; returns false, with undefined results, if the work is
-  // cancelled.
+  // Traces the camera rays and all rays that they spawn. Inactive rays count as rays that miss everything.
+  // `draws` returns the random numbers of the sample. Polls `checkpoint`. Returns false, with undefined
+  // results, if the work is cancelled.
   virtual bool trace(const RayBatch<T>& camera_rays, const Draws& draws, TraceResult<T>& out,
                      TraceCounts& counts, const Checkpoint& checkpoint = {}) = 0;
 
-  // Returns true if only trace_emission_only() finds directly visible emission, with separate camera rays.
-  // Emitters have the sharpest edges of a picture, and emission-only rays are cheap.
+  // Returns true if trace() omits directly visible emission. The caller then adds it by
+  // trace_emission_only(), with separate camera rays. Emitters have the sharpest edges of an image, and
+  // emission-only rays are cheap.
   virtual bool has_emission_pass() const { return false; }
-  // Adds `share` of the emission and background that the camera rays hit first.
+  // Adds the emission of the first hit of each camera ray, or of the background, times `share`.
   virtual void trace_emission_only(const RayBatch<T>& /*camera_rays*/, T /*share*/, TraceResult<T>& /*out*/,
                                    TraceCounts& /*counts*/) {}
 };
@@ -51,13 +53,13 @@ using TracerPtr = std::unique_ptr<Tracer<T>>;
 struct TechniqueType {
   const char* name;
   const char* summary;
-  int max_depth;                // unless a request or a scene sets it
+  int max_depth;                // default; a request or a scene may set another
   bool secondary_rays = false;  // follows mirrored and refracted rays
   // Samples one light source and one direction per vertex. Emitting surfaces and the environment are then
-  // light sources, and lenses blur.
+  // light sources, and lenses cause defocus blur.
   bool draws_light = false;
-  bool interreflects = false;                  // diffuse surfaces light each other, instead of ambient light
-  std::vector<const char*> not_followed = {};  // kinds of light missing in every scene
+  bool interreflects = false;                  // diffuse interreflection replaces ambient light
+  std::vector<const char*> not_followed = {};  // kinds of light that are missing in every scene
   TracerPtr<float> (*make_float)(const World<float>&, const Plan&);
   TracerPtr<double> (*make_double)(const World<double>&, const Plan&);
 };

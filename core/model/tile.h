@@ -5,12 +5,12 @@
 namespace orrery {
 
 // Side of the square of pixels that one batch of camera rays covers. Tiles form a fixed grid anchored at
-// pixel (0, 0) of the full picture.
+// pixel (0, 0) of the image.
 inline constexpr int kTileSide = 32;
 static_assert(kTileSide * kTileSide == kBatch);
 
-// Pixel of a slot within its tile. Slots run in blocks of 4x4 pixels, so that the rays of one register are
-// neighbours at any SIMD width.
+// Pixel within a tile. tile_pixel(slot) returns the pixel of element `slot` of the batch. Elements are in
+// blocks of 4x4 pixels, so that the rays of one register are neighbours at any SIMD width.
 struct TilePixel {
   int x, y;
 };
@@ -20,18 +20,18 @@ constexpr TilePixel tile_pixel(int slot) {
   return {block % kBlocks * 4 + within % 4, block / kBlocks * 4 + within / 4};
 }
 
-// Tile of a picture, and a range of its samples. Row 0 is the top.
+// Tile of an image, and a range of its samples. Row 0 is at the top.
 struct TileView {
-  int x0, y0;               // first pixel, in the full picture; multiples of kTileSide
-  int width, height;        // pixels of the tile within the picture, 1..kTileSide
+  int x0, y0;               // first pixel, in the image; multiples of kTileSide
+  int width, height;        // size of the part inside the image, 1 to kTileSide pixels
   std::uint64_t frame = 0;  // animation frame; different frames have different samples
   int first_sample = 0, samples = 1;
 
-  // Returns true if the whole tile lies within the picture.
+  // Returns true if the whole tile is inside the image.
   bool is_whole() const { return width == kTileSide && height == kTileSide; }
 };
 
-// Calls visit(slot) for each pixel of the tile within the picture.
+// Calls visit(slot) for the batch element of each pixel of the tile that is inside the image.
 template <class Visit>
 void for_each_slot(const TileView& tile, const Visit& visit) {
   for (int slot = 0; slot < kBatch; ++slot) {
@@ -40,7 +40,7 @@ void for_each_slot(const TileView& tile, const Visit& visit) {
   }
 }
 
-// Tiles of a picture, row by row.
+// Tiles of an image, row by row.
 class TileGrid {
  public:
   TileGrid(int width, int height)
@@ -50,7 +50,7 @@ class TileGrid {
         down_((height + kTileSide - 1) / kTileSide) {}
 
   int size() const { return across_ * down_; }
-  // Returns tile `index` with samples 0 up to `samples`. REQUIRES: 0 <= index < size().
+  // Returns tile `index` with samples 0 to `samples` - 1. REQUIRES: 0 <= index < size().
   TileView at(int index, int samples) const {
     const int x0 = index % across_ * kTileSide, y0 = index / across_ * kTileSide;
     return {.x0 = x0,

@@ -13,12 +13,12 @@ struct ModelGeometry;
 template <class T>
 class LightTree;
 
-// Scene geometry in one number type at one moment. Immutable once made.
+// Scene geometry in one number type, for one exposure. Immutable once built.
 template <class T>
 struct Geometry {
   struct Materials {
     MaterialKernelPtr<T> kernel;
-    int first, last;  // materials first..last-1
+    int first, last;  // materials `first` to `last` - 1
     MaterialTraits traits;
   };
 
@@ -26,17 +26,18 @@ struct Geometry {
   std::vector<ShapeKernelPtr<T>> shapes;
   std::vector<std::shared_ptr<const ModelGeometry<T>>> models;
   std::vector<Materials> materials;
-  // By type, in the order of Scene::light_sets; null for types without lights.
+  // One per type, in the order of Scene::light_sets. Null for types without lights.
   std::vector<LightKernelPtr<T>> lights;
-  std::vector<Vec3<T>> emission;  // by material: see Scene; empty if nothing emits
-  // Emitting primitives that light can be sampled from, in one kernel; null if there are none.
+  std::vector<Vec3<T>> emission;  // per material: see Scene; empty if nothing emits
+  // Kernel of the emitting primitives that can be sampled. Null if there are none.
   LightKernelPtr<T> emitters;
-  std::vector<IndexOf<T>> emitter_of;  // by primitive: its number in `emitters`, or -1
-  // True if other primitives emit, or if some emitter is never sampled from points that can see it.
+  std::vector<IndexOf<T>> emitter_of;  // per primitive: its index in `emitters`, or -1
+  // True if other primitives emit too, or if an emitter is not sampled from some of the points that it
+  // illuminates.
   bool emits_undrawn = false;
-  // Lights of the scene, then the emitters; null if there are none.
+  // Contains the lights of the scene, then the emitters. Null if there are none.
   std::shared_ptr<const LightTree<T>> light_tree;
-  LightKernelPtr<T> environment;  // its light 0; null if the background is constant
+  LightKernelPtr<T> environment;  // light 0 is the environment; null if the background is constant
   std::vector<IndexOf<T>> material_of;
   PrimitiveList<T> primitives;
   Vec3<T> ambient, background;

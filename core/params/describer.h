@@ -12,8 +12,9 @@ namespace orrery {
 
 using Schema = nlohmann::ordered_json;
 
-// Enumerates the choices (pick, form) of a read function, depth first. Run the function again while advance()
-// returns true: each run takes one combination of alternatives, and every combination is taken once.
+// Enumerates the choices (pick, form) of a read function, depth first. Call the function again while
+// advance() returns true. Each call selects one combination of alternatives, and every combination is
+// selected once.
 class Choices {
  public:
   std::size_t choose(std::size_t alternatives) {
@@ -29,7 +30,7 @@ class Choices {
   }
 
  private:
-  std::vector<std::pair<std::size_t, std::size_t>> steps_;  // alternative taken, number of alternatives
+  std::vector<std::pair<std::size_t, std::size_t>> steps_;  // selected alternative, number of alternatives
   std::size_t next_ = 0;
 };
 
@@ -37,7 +38,7 @@ class Choices {
 // to the read function is a default or a placeholder.
 class Describer final : public Params {
  public:
-  // Schemas used more than once are added to `definitions` ($defs).
+  // Schemas that may be used more than once are added to `definitions` ($defs).
   Describer(Choices& choices, Schema& definitions) : choices_(choices), definitions_(definitions) {}
 
   // Returns the schema of all combinations of choices: one object, or "oneOf" several.
@@ -81,7 +82,7 @@ class Describer final : public Params {
   Schema required_ = Schema::array();
 };
 
-// Formats a schema with indentation. Values that fit into one line are not broken.
+// Formats a schema with indentation. A value that fits on one line is not broken.
 std::string pretty(const Schema& schema);
 
 }  // namespace orrery

@@ -9,7 +9,7 @@
 
 namespace orrery {
 
-// Limits of parse_document(). An error names the limit that was exceeded.
+// Limits of parse_document(). The error names the exceeded limit.
 struct JsonLimits {
   std::size_t depth = 32;         // nested arrays and objects; bounds every recursion
   std::size_t nodes = 1'000'000;  // values of any kind; 16 to 100 bytes of memory each
@@ -28,13 +28,13 @@ class Document {
   // JSON Pointer (RFC 6901) of this value in the parsed text; "" for the root.
   const std::string& pointer() const noexcept { return pointer_; }
 
-  // Returns the canonical text of this value. Keys are sorted by bytes and there are no spaces. A number is
-  // the shortest decimal that reads back to the same double: 1, 1.0 and 10e-1 are equal, and -0 is 0. Strings
-  // are UTF-8 with only the escapes that JSON requires.
+  // Returns the canonical text of this value. Keys are sorted by bytes and there is no white space. A number
+  // is the shortest decimal that reads back to the same double: 1, 1.0 and 10e-1 have the same text, and -0
+  // becomes 0. Strings are UTF-8 with only the escapes that JSON requires.
   std::string canonical() const;
 
-  // Returns the SHA-256 of canonical() as 64 hexadecimal digits. Texts that differ only in layout have one
-  // id.
+  // Returns the SHA-256 of canonical() as 64 hexadecimal digits. Texts that differ only in white space, key
+  // order or the spelling of values have the same id.
   std::string id() const;
 
  private:

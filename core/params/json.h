@@ -11,7 +11,7 @@ namespace orrery {
 
 struct DocumentAccess {
   static const nlohmann::json& tree(const Document& document) { return *document.value_; }
-  // Returns a document of `part`, which must be inside the tree of `document`.
+  // Returns `part` as a document. REQUIRES: `part` is inside the tree of `document`.
   static Document part(const Document& document, const nlohmann::json& part, std::string pointer) {
     return Document(std::shared_ptr<const nlohmann::json>(document.value_, &part), std::move(pointer));
   }

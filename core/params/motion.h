@@ -23,11 +23,11 @@ auto read_motion(Params& p, const Read& read) {
                                           {.min = -kMaxTime, .max = kMaxTime});
            if (!keys.empty() && time <= keys.times.back())
              key.fail("time", "must be > " + number_text(keys.times.back()) +
-                                  ", the time of the previous key (got " + number_text(time) + ")");
+                                  ", the time of the previous keyframe (got " + number_text(time) + ")");
            keys.times.push_back(time);
            keys.values.push_back(read(key));
          });
-  if (keys.times.size() == 1) p.fail("motion", "must be a list of no keys or at least 2 (got 1)");
+  if (keys.times.size() == 1) p.fail("motion", "must have no keyframes or at least 2 (got 1)");
   return keys;
 }
 

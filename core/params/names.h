@@ -10,7 +10,7 @@
 
 namespace orrery {
 
-// Names that a document defines and refers to, numbered in insertion order.
+// Names defined in a document, numbered in insertion order.
 class Names {
  public:
   // `kind` is the noun in errors: unknown material "slver" (did you mean "silver"?).

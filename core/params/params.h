@@ -26,15 +26,15 @@
 //
 // read_document() runs the function over a document, checks the values and returns them. describe() runs the
 // same function without a document and writes the declared keys as a JSON Schema. Reader and schema therefore
-// agree, provided that the function declares the same keys for all values. Alternatives go through pick and
-// form.
+// agree, provided that the function declares the same keys for all values. Alternatives must use pick() or
+// form().
 //
-// An invalid value adds a problem and returns a placeholder inside the range. Reading continues, so the user
-// sees all problems at once. Do not act on a value before read_document() has returned.
+// For an invalid value, the reader records a problem and returns a placeholder inside the range. Reading
+// continues, so the user sees all problems at once. Do not use a value before read_document() has returned.
 
 namespace orrery {
 
-inline constexpr double kMaxCoordinate = 1e12;  // metres; squared differences lose all precision beyond
+inline constexpr double kMaxCoordinate = 1e12;  // metres; squared differences lose all precision above
 inline constexpr double kMinLength = 1e-12;
 inline constexpr double kMaxLength = 1e12;
 inline constexpr double kMaxColor = 1e6;
@@ -56,14 +56,15 @@ struct Range {
   }
 };
 
-// Allowed size of a list or map. If `min` is 0, the key may be missing, and the list or map is empty.
+// Allowed number of entries in a list or map. If `min` is 0, a missing key means an empty list or map.
 struct Count {
   std::size_t min = 0;
   std::size_t max = std::numeric_limits<std::size_t>::max();
 };
 
-// Value of a missing key. An empty Fallback makes the key required. A value is the default, and is written to
-// the schema. derived(value) is a default that depends on other keys, and is not written to the schema.
+// Value used for a missing key. An empty Fallback makes the key required. A Fallback with a value is the
+// default, which the schema shows. derived(value) is a default that depends on other keys, which the schema
+// does not show.
 template <class T>
 struct Fallback {
   std::optional<T> value;
@@ -87,8 +88,8 @@ struct Choice {
   std::string_view summary;
 };
 
-// One JSON object that is read or described. `key` must be a string literal, because only a reference is
-// kept. `doc` is the description in the schema. Not thread-safe.
+// One JSON object that is read or described. `key` must be a string literal, because only a reference to it
+// is stored. `doc` is the description in the schema. Not thread-safe.
 class Params {
  public:
   using Read = std::function<void(Params&)>;
@@ -102,7 +103,7 @@ class Params {
   double number(std::string_view key, std::string_view doc, const Range& range = {},
                 Fallback<double> fallback = {});
   double positive(std::string_view key, std::string_view doc,
-                  Fallback<double> fallback = {});  // a length, metres
+                  Fallback<double> fallback = {});  // metres, kMinLength to kMaxLength
   std::int64_t integer(std::string_view key, std::string_view doc, std::int64_t min, std::int64_t max,
                        Fallback<std::int64_t> fallback = {});  // 3.0 is an integer; |limits| <= 2^53
   bool flag(std::string_view key, std::string_view doc, Fallback<bool> fallback = {});
@@ -144,28 +145,29 @@ class Params {
   // -- Nested objects. A key that `read` does not declare is an error. --
   void object(std::string_view key, std::string_view doc, const Read& read);  // required
   void optional_object(std::string_view key, std::string_view doc,
-                       const Read& read);  // a missing object reads as {}
+                       const Read& read);  // a missing object is read as {}
   void object_if_given(std::string_view key, std::string_view doc,
-                       const Read& read);  // a missing object is not read
+                       const Read& read);  // `read` is not called if the object is missing
   void each(std::string_view key, std::string_view doc, Count count, const Read& read);
   void each_named(std::string_view key, std::string_view doc, Count count,
                   const ReadNamed& read);  // sorted by name
 
   // -- Alternatives --
   //
-  // Returns the index of the type named by `key`, or nullopt if `key` is missing or names no type. In the
-  // second case unknown keys of the object are not reported.
+  // Returns the index of the type named by `key`. If `key` is missing or its type is unknown, reports an
+  // error and returns nullopt. Unknown keys of the object are then not reported.
   std::optional<std::size_t> pick(std::string_view key, std::string_view doc,
                                   std::span<const Choice> choices);
 
   // Returns the index of the key set that the object uses: form({{"base", "top"}, {"point", "axis"}}) is 0 or
-  // 1. Exactly one set must be present, and the sets must be disjoint. The keys are then read as usual.
+  // 1. Reports an error unless keys of exactly one set are present. No key is required if one set is empty.
+  // The keys are then read as usual. REQUIRES: the sets are disjoint.
   std::size_t form(std::initializer_list<std::initializer_list<std::string_view>> key_sets);
 
   // Returns the index in `names` of the name at `key`, e.g. the material of an object. Returns 0 on error.
   std::size_t reference(std::string_view key, std::string_view doc, const Names& names);
 
-  // Returns the unchecked value of `key`, to be read by another function, or nullopt if the key is missing.
+  // Returns the unchecked value of `key`, for another function to read, or nullopt if the key is missing.
   std::optional<Document> any(std::string_view key, std::string_view doc);
 
   // -- Validation across keys --
@@ -173,16 +175,16 @@ class Params {
   // Returns whether the key is present. For optional keys only. Must not decide which keys are read: use
   // form().
   bool has(std::string_view key) const;
-  // Reports that the value of `key` is invalid, e.g. eye equal to look_at. With "", reports the whole object.
-  // Ignored if a value of this object was already invalid, since the values may then be placeholders.
+  // Reports that the value of `key` is invalid, e.g. eye equal to look_at. If `key` is "", the problem points
+  // to the object. Ignored if a value in this object was already invalid, since values may be placeholders.
   void fail(std::string_view key, std::string detail);
   // Returns the JSON Pointer of this object or of its member `key`.
   std::string pointer(std::string_view key = "") const;
 
  protected:
-  // Kind of a triple of numbers. Selects the checks, the error text and the schema.
+  // Kind of a triple of numbers. Determines the checks, the error text and the schema.
   enum class Kind { point, direction, color, coefficient, numbers };
-  // Meaning of a missing object: an error, {}, or not read.
+  // Handling of a missing object: report an error, read it as {}, or skip it.
   enum class Missing { problem, empty, nothing };
   using Key = std::string_view;
   using Doc = std::string_view;
@@ -214,14 +216,14 @@ class Params {
   virtual std::string do_pointer(Key) const = 0;
 };
 
-// Reads a document, which must be an object. Throws InputError with up to 20 problems, including unknown
-// keys. Each problem carries a pointer from the root of the parsed text.
+// Reads a document. Throws InputError with up to 20 problems if it is not an object, has invalid values or
+// has unknown keys. Each problem carries a pointer from the root of the parsed text.
 void read_document(const Document& document, const Params::Read& read);
 
 // Returns the JSON Schema (draft 2020-12) of `read` as indented text that ends in a newline. `id` and `title`
-// become $id and title. `description` is prose for the whole schema, and a note on its limits is appended.
-// The schema covers all checks of read_document() except fail(), reference() and the bound of
-// index_triples().
+// become $id and title. `description` describes the whole schema. A note on conditions that a schema cannot
+// express is appended. The schema covers all checks of read_document() except fail(), reference() and the
+// bound of index_triples().
 std::string describe(std::string_view id, std::string_view title, std::string_view description,
                      const Params::Read& read);
 

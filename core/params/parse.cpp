@@ -10,8 +10,8 @@
 #include "core/params/json.h"
 #include "core/params/words.h"
 
-// Builds the tree through nlohmann's SAX interface. Its DOM parser keeps the last of two equal keys, has no
-// limits, and its error texts are meant for programmers.
+// Builds the tree through nlohmann's SAX interface. The DOM parser would keep the last of two equal keys,
+// would apply no limits, and would report errors in programmers' terms.
 
 namespace orrery {
 namespace {
@@ -37,8 +37,8 @@ std::string in_plain_words(std::string text) {
   return text;
 }
 
-// Rewrites "unexpected X; expected Y" as "must be Y (got X)". If Y is a closing bracket, a comma is also
-// valid there, and is more often forgotten.
+// Rewrites "unexpected X; expected Y" as "must be Y (got X)". If Y is a closing bracket, the result also
+// suggests a comma, which is valid there too and is forgotten more often.
 std::string in_our_grammar(const std::string& reason) {
   constexpr std::string_view kUnexpected = "unexpected ", kExpected = "; expected ";
   const std::size_t split = reason.find(kExpected);
@@ -92,18 +92,18 @@ class TreeBuilder {
     constexpr int kNumberOverflow = 406;
     if (error.id == kNumberOverflow) {
       problems_.push_back(
-          {next_pointer(), "must be a number that a double can hold (got " + in_quotes(token) + ")"});
+          {next_pointer(), "must be within the range of a double (got " + in_quotes(token) + ")"});
       throw InputError(std::move(problems_));
     }
-    // `position` is the number of bytes read. The last byte read is the wrong character or ends the wrong
-    // token.
+    // `position` is the number of bytes read. The last byte read is the invalid character, or the end of the
+    // unexpected token.
     const std::string_view what = error.what();
     const std::size_t last = position > 0 ? position - 1 : 0;
     fail(what.find(" - unexpected ") == what.npos ? last : token_start(last), reason_of(what));
   }
 
   void refuse_zero_bytes() {
-    const std::size_t zero = text_.find('\0');  // nlohmann would end the text here
+    const std::size_t zero = text_.find('\0');  // nlohmann treats it as the end of the text
     if (zero != text_.npos) fail(zero, "JSON text must not contain a zero byte");
   }
 
@@ -158,7 +158,7 @@ class TreeBuilder {
     return level.slot;
   }
 
-  // Returns the pointer of the last value or key read. In an array this is the last element.
+  // Returns the pointer of the last value or key read. In an array, this is the last element.
   std::string pointer() const {
     std::string text;
     for (const Level& level : levels_) {
@@ -203,7 +203,7 @@ class TreeBuilder {
     return first;
   }
 
-  // Returns the word around `offset`, e.g. NaN, for the error text.
+  // Returns the word around `offset`, e.g. NaN, for the error text. Reads up to 40 bytes in each direction.
   std::string_view word_at(std::size_t offset) const {
     std::size_t first = offset, last = offset;
     while (first > 0 && offset - first < 40 && in_word(text_[first - 1])) --first;

@@ -15,8 +15,8 @@ namespace {
 
 using nlohmann::json;
 
-// Returns the value if it is an integer, also written as 3.0. Integers are not converted through double,
-// which would round values above 2^53.
+// Returns the value if it is an integer (3.0 is one), else nullopt. Integers are not converted through
+// double, which would round values above 2^53.
 std::optional<std::int64_t> integer_of(const json& value) {
   if (value.is_number_float()) {
     const double x = value.get<double>();
@@ -57,7 +57,7 @@ void Reader::finish() {
   };
   for (const auto& [key, value] : object_->get_ref<const json::object_t&>()) {
     if (was_asked(key)) continue;
-    std::vector<Key> free;  // known keys that are absent; one of them may be meant
+    std::vector<Key> free;  // declared keys that are absent, to suggest from
     std::copy_if(asked_.begin(), asked_.end(), std::back_inserter(free), [&](Key k) { return !lookup(k); });
     problems_.add(pointer(), "unknown key " + in_quotes(key) + did_you_mean_key(key, free));
   }

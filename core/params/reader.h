@@ -9,7 +9,7 @@
 
 namespace orrery {
 
-// Problems of one document. Throws as soon as there are InputError::kMaxProblems of them.
+// Problems of one document. add() throws InputError once the list has InputError::kMaxProblems entries.
 class ProblemList {
  public:
   void add(std::string pointer, std::string detail) {
@@ -24,27 +24,27 @@ class ProblemList {
   std::vector<Problem> problems_;
 };
 
-// Position of a value in its parent: a key, and an index or name if the key holds a list or map.
+// Position of a value in its parent: a key, and an index or name if the value of the key is a list or map.
 struct Location {
   std::string_view key;
   std::optional<std::size_t> index = {};
   std::optional<std::string_view> name = {};
 };
 
-// Returns the number in `value`, or nullopt if it is no number or out of range. Turns -0 into 0, since
-// canonical text does not distinguish the two.
+// Returns the number in `value`, or nullopt if `value` is not a number or is out of range. Returns 0 for -0,
+// since canonical text does not distinguish them.
 std::optional<double> number_in(const nlohmann::json& value, const Range& range);
 
-// Reader of one object. Lives on the stack of the function that reads its parent. The chain of parents gives
-// the pointer of an error, so valid values need no pointer text.
+// Reader of one object, on the stack of the function that reads its parent. The pointer of an error is built
+// from the chain of parents, so valid values allocate no text.
 class Reader final : public Params {
  public:
   // Reads the root. REQUIRES: json_of(document) is an object.
   Reader(const Document& document, ProblemList& problems);
   Reader(Reader& parent, const Location& location, const nlohmann::json& object);
 
-  // Reports every key that was not read. Does nothing if the type is unknown, since its keys are then unknown
-  // too.
+  // Reports every key that was not read. Does nothing if the type is unknown, since the valid keys are then
+  // unknown too.
   void finish();
 
  private:
@@ -83,11 +83,13 @@ class Reader final : public Params {
     return value;
   }
   void note_missing(Key key, const std::string& allowed);
-  // Returns the name of `key` in this object: the former one if the object has only that.
+  // Returns the name of `key` in this object: its former name if the object contains only that name, else
+  // `key`.
   Key written_key(Key key) const;
-  const nlohmann::json* member(Key name) const;  // by exactly this name; null if it is missing
-  const nlohmann::json* lookup(Key key) const;   // by the key's present or former name; null if it is missing
-  // Returns the list at `key`. Reports an error and returns null if the type or the size is wrong.
+  const nlohmann::json* member(Key name) const;  // by exactly this name; null if missing
+  const nlohmann::json* lookup(Key key) const;   // by present or former name; null if missing
+  // Returns the list at `key`, or null if it is missing. Reports an error and returns null if a required list
+  // is missing, or if its type or size is wrong.
   const nlohmann::json* find_list(Key key, Count count, std::string_view noun);
 
   // Reads a triple of numbers. Reports an error and leaves `three` unchanged if the value is invalid.
@@ -114,8 +116,8 @@ class Reader final : public Params {
   ProblemList& problems_;
   const nlohmann::json* object_;
   std::vector<Key> asked_;
-  std::vector<Key> excused_;  // keys whose absence is already reported
-  bool broken_ = false;       // a value here or in a child was invalid
+  std::vector<Key> excused_;  // missing keys that are already reported
+  bool broken_ = false;       // a value of this or a nested object was invalid
   bool type_unknown_ = false;
 };
 

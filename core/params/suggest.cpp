@@ -11,7 +11,7 @@ namespace orrery {
 namespace {
 
 constexpr int kMaxSlips = 2;
-constexpr std::size_t kMaxWord = 64;  // longer words are not treated as typing errors
+constexpr std::size_t kMaxWord = 64;  // bytes; longer words get no suggestion
 
 std::string lower_case(std::string_view text) {
   std::string lower(text);
@@ -30,8 +30,8 @@ std::string plain_letters(std::string_view text) {
   return letters;
 }
 
-// Words of other programs, each with the keys of the same meaning. An object has at most a few of them, so
-// the first one that it can take is suggested.
+// Words of other programs, each with keys of the same meaning in order of preference. The first key that the
+// object accepts is suggested.
 struct Synonym {
   std::string_view word;
   std::array<std::string_view, 6> keys;
@@ -83,7 +83,8 @@ constexpr Synonym kSynonyms[] = {
     {"path", {"file"}},
 };
 
-// Returns the edit distance to accept. Two edits in a word of three letters would match almost anything.
+// Returns the maximum edit distance for a word of this length. Two edits in a word of three letters would
+// match almost anything.
 int slips_allowed(std::size_t length) { return std::min(kMaxSlips, static_cast<int>((length + 2) / 3)); }
 
 // Returns the candidate that begins with `word`, or nullopt unless there is exactly one.

@@ -15,21 +15,21 @@ inline constexpr std::size_t kMaxCandidates = 1000;
 // adjacent characters, where no character is edited twice. Returns limit + 1 if the distance exceeds `limit`.
 int edit_distance(std::string_view a, std::string_view b, int limit);
 
-// Returns the candidate that `word` was probably meant to be, or nullopt if none is close. Accepts, in this
-// order, a candidate within two edits (case is ignored), an abbreviation ("fov" for "fov_degrees"), and the
-// only candidate that begins with `word` ("w" for "width").
+// Returns the candidate that `word` was probably meant to be, or nullopt if none is similar. Accepts, in this
+// order, a candidate within two edits (case is ignored), an abbreviation ("fov" for "fov_degrees") or the
+// reverse, and the only candidate that begins with `word` ("w" for "width").
 std::optional<std::string> nearest(std::string_view word, std::span<const std::string_view> candidates);
 
-// Returns the key that `word` stands for, or nullopt if none is likely. Accepts a key of the same meaning
-// (other programs say "albedo" for "kd" and "spp" for "samples"), then a key that nearest() finds. `keys`
-// must be those that the object can still take.
+// Returns the key that `word` was probably meant to be, or nullopt if none is similar. Accepts a key of the
+// same meaning (other programs use "albedo" for "kd" and "spp" for "samples"), then a key that nearest()
+// finds. REQUIRES: `keys` are declared keys that the object does not contain.
 std::optional<std::string> nearest_key(std::string_view word, std::span<const std::string_view> keys);
 
-// Returns ` (did you mean --radius?)` with the prefix "--", or "" without `name`. For flags, commands and
-// settings.
+// Returns ` (did you mean --radius?)` for the name "radius" and the prefix "--", or "" if `name` is nullopt.
+// For flags, commands and settings.
 std::string question_of(const std::optional<std::string>& name, std::string_view prefix = "");
 
-// Return ` (did you mean "radius"?)`, or "" if no candidate is close.
+// Return ` (did you mean "radius"?)`, or "" if no candidate is similar.
 std::string did_you_mean(std::string_view word, std::span<const std::string_view> candidates);
 std::string did_you_mean_key(std::string_view word, std::span<const std::string_view> keys);
 

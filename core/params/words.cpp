@@ -49,7 +49,7 @@ void append_string(std::string_view text, std::string& out, std::size_t limit) {
   out += '"';
 }
 
-// Cuts a text longer than kBriefCharacters characters and appends "...".
+// Truncates a text longer than kBriefCharacters characters and appends "...".
 std::string cut(std::string text) {
   const std::size_t first = first_characters(text, kBriefCharacters).size();
   if (first == text.size()) return text;
@@ -100,7 +100,7 @@ void append_canonical(const nlohmann::json& value, std::string& out, std::size_t
     case json::value_t::boolean: out += value.get<bool>() ? "true" : "false"; break;
     case json::value_t::number_integer:
     case json::value_t::number_unsigned:
-      if (std::abs(value.get<double>()) >= kMaxInteger) {  // a double may be rounded
+      if (std::abs(value.get<double>()) >= kMaxInteger) {  // a double may round the integer
         out += value.dump();
         break;
       }

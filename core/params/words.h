@@ -11,14 +11,14 @@
 namespace orrery {
 
 // Appends the canonical text of a value (see Document::canonical). Stops soon after `limit` bytes, possibly
-// in the middle of a value, so that a huge value costs little.
+// in the middle of a value, which bounds the cost of a huge value.
 void append_canonical(const nlohmann::json& value, std::string& out,
                       std::size_t limit = std::numeric_limits<std::size_t>::max());
 
-// Returns the canonical text of a value, cut to 40 characters.
+// Returns the canonical text of a value, truncated to 40 characters and "...".
 std::string brief(const nlohmann::json& value);
 
-// Returns a name in double quotes with JSON escapes, cut to 40 characters.
+// Returns a name in double quotes with JSON escapes, truncated to 40 characters and "...".
 std::string in_quotes(std::string_view name);
 
 // Lists the quoted words: "a", "b" or "c".
@@ -30,7 +30,7 @@ std::string choice_text(std::span<const std::string_view> words);
 // Returns "/" and the key, escaped for a JSON Pointer (RFC 6901). Long keys are shortened.
 std::string pointer_step(std::string_view key);
 
-// Formats the limits: " from 0 to 1", " > 0", " of at least 0", or "" if there are none.
+// Formats the limits with a leading space: " from 0 to 1", " > 0", " of at least 0", or "" if there are none.
 std::string range_text(const Range& range);
 
 // Formats the count: "at least 1", "at most 3", "3", "1 to 1024". The caller appends a noun.

@@ -48,7 +48,7 @@ std::string decoder_path() {
   const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
   for (const fs::path& path : {folder / "orrery-decode", folder.parent_path() / "orrery-decode"})
     if (access(path.c_str(), X_OK) == 0) return path;
-  throw InputError("", "images cannot be read: program orrery-decode is missing in " + folder.string());
+  throw InputError("", "cannot read images: program orrery-decode is missing in " + folder.string());
 }
 
 const char* plugin_of(PictureFormat format) {
@@ -67,10 +67,10 @@ std::uint64_t allowance(const PictureFile& file) {
   return file.decoder_bytes + samples * sample_bytes * file.width * rows * 4;
 }
 
-// Makes a file in memory of the parts that affect texels. Returns its descriptor.
+// Writes the parts that affect texels to a file in memory. Returns the descriptor of the file.
 int file_of_parts(const PictureFile& file) {
   const int number = memfd_create("picture", MFD_CLOEXEC);
-  if (number < 0) fail_system("memfd_create");
+  if (number < 0) fail_system("cannot create a file in memory");
   for (std::string_view part : file.parts)
     while (!part.empty()) {
       interruption_point();
@@ -85,7 +85,8 @@ int file_of_parts(const PictureFile& file) {
   return number;
 }
 
-// Gives a decoder about a tenth of the CPU share of a render thread. A burst of uploads can start dozens.
+// Gives a decoder about a tenth of the CPU time of a render thread, because a burst of uploads can start
+// dozens of decoders.
 constexpr int kNiceness = 10;
 
 // Decoder process. The destructor kills it if it is still running.
@@ -134,7 +135,7 @@ class Decoder {
 
 // Reads until `bytes` is full or the other end is closed. Returns the number of bytes read.
 std::size_t read_full(int from, std::span<std::byte> bytes) {
-  constexpr int kLook_ms = 20;  // delay until a cancelled decoder is killed
+  constexpr int kLook_ms = 20;  // maximum delay until a cancelled decoder is killed
   std::size_t got = 0;
   while (got < bytes.size()) {
     interruption_point();
@@ -150,7 +151,7 @@ std::size_t read_full(int from, std::span<std::byte> bytes) {
 
 [[noreturn]] void fail_ended(int status) {
   if (WIFSIGNALED(status))
-    throw InputError("", std::string("image cannot be decoded: signal ended the decoder (") +
+    throw InputError("", std::string("cannot decode image: a signal ended the decoder (") +
                              strsignal(WTERMSIG(status)) + ")");
   throw InputError("", "image is damaged: decoder stopped early");
 }
@@ -161,7 +162,7 @@ Texels decode_in_process(const PictureFile& file) {
   const MemoryCharge charge(kDecoderBytes + allowance(file));
   const Descriptor input(file_of_parts(file));
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) fail_system("pipe2");
+  if (pipe2(ends, O_CLOEXEC) != 0) fail_system("cannot create a pipe");
   const Descriptor output(ends[0]);
   Descriptor to_decoder(ends[1]);
   Decoder decoder(file, input.get(), to_decoder.get());
@@ -175,7 +176,7 @@ Texels decode_in_process(const PictureFile& file) {
     throw InputError("", std::move(text));
   }
   if (header.width != file.width || header.height != file.height)
-    throw InputError("", "image is damaged: decoded size must be the size in the header, " +
+    throw InputError("", "image is damaged: decoded size must equal the size in the header, " +
                              std::to_string(file.width) + " x " + std::to_string(file.height) + " (got " +
                              std::to_string(header.width) + " x " + std::to_string(header.height) + ")");
   Texels picture{static_cast<int>(header.width), static_cast<int>(header.height), {}};

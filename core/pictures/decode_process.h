@@ -5,11 +5,12 @@
 namespace orrery {
 
 // Decodes a file to linear light in a separate process, orrery-decode. The program must be in the folder of
-// the executable or in its parent. The process may allocate kDecoderBytes and what the file's size justifies.
-// Both are charged to the memory account of this thread. Cancellation kills the process within 20 ms.
+// the executable or in its parent. The process may allocate kDecoderBytes plus an allowance that depends on
+// the image size. Both are charged to the memory account of the calling thread. Cancellation kills the
+// process within 20 ms.
 //
 // Throws InputError (pointer "") if the file is damaged, needs more memory, or crashes the library. Throws
-// Cancelled, and std::bad_alloc if the account rejects the memory.
+// Cancelled, and std::bad_alloc if the account refuses the memory.
 Texels decode_in_process(const PictureFile& file);
 
 }  // namespace orrery

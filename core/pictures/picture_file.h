@@ -10,7 +10,7 @@
 
 namespace orrery {
 
-// Header data of a picture file, read before decoding.
+// Header data of an image file, read before decoding.
 struct PictureFile {
   PictureFormat format;
   std::uint64_t width = 0, height = 0;
@@ -21,7 +21,7 @@ struct PictureFile {
   // decoders spend memory and time on them.
   std::vector<std::string_view> parts;
 
-  // Adds bytes as a part of their own, or to the last part if they follow it directly.
+  // Appends the bytes as a new part. Extends the last part instead if they follow it directly.
   void keep(std::string_view bytes) {
     if (!parts.empty() && parts.back().data() + parts.back().size() == bytes.data())
       parts.back() = {parts.back().data(), parts.back().size() + bytes.size()};
@@ -52,7 +52,7 @@ class ByteReader {
   std::size_t offset() const { return begin_ + at_; }  // in the file
   std::size_t left() const { return bytes_.size() - at_; }
   std::string_view take(std::size_t count);
-  ByteReader part(std::size_t count);     // reader of the next bytes, which are skipped
+  ByteReader part(std::size_t count);     // reader of the next `count` bytes, skips them
   std::string_view take_until(char end);  // `end` is skipped and not returned
   unsigned byte() { return static_cast<unsigned char>(take(1)[0]); }
   std::uint32_t big_endian(int bytes);

@@ -27,7 +27,7 @@ O::Names names_of(const Types& types) {
 int max_depth_of(const TechniqueType& type) { return type.max_depth; }
 O::Names technique_names() { return names_of(technique_types()); }
 O::Names channel_names() { return names_of(channel_types()); }
-// Names of the accelerators, and "auto", which lets the planner choose.
+// "auto", which lets the planner choose, and the names of the accelerators.
 O::Names accelerator_names() {
   O::Names names = names_of(accelerator_types());
   names.insert(names.begin(), "auto");
@@ -35,7 +35,7 @@ O::Names accelerator_names() {
 }
 
 static_assert(std::int64_t{kMaxImageSide} * kMaxImageSide <= kMaxImagePixels,
-              "sides within their range never make too many pixels");
+              "an image whose sides are in range has at most kMaxImagePixels pixels");
 
 // All options, in the order of the schema and of help.
 constexpr std::array kOptions{
@@ -44,20 +44,21 @@ constexpr std::array kOptions{
       .section = Section::camera,
       .kind = O::Number{&S::azimuth_degrees, {.min = -kMaxOrbitDegrees, .max = kMaxOrbitDegrees}, 0},
       .placeholder = "DEGREES",
-      .help = "Camera azimuth in degrees about the up axis, anticlockwise from above.",
+      .help = "Camera azimuth in degrees from the scene's camera, anticlockwise as seen from above.",
       .in_scene = false},
     O{.key = "elevation_degrees",
       .short_name = "elevation",
       .section = Section::camera,
       .kind = O::Number{&S::elevation_degrees, {.min = -180, .max = 180}, 0},
       .placeholder = "DEGREES",
-      .help = "Camera elevation in degrees, clamped to straight above and straight below.",
+      .help = "Camera elevation in degrees above the scene's camera, clamped directly above and below the "
+              "target.",
       .in_scene = false},
     O{.key = "distance",
       .section = Section::camera,
       .kind = O::Number{&S::distance, {.min = kMinOrbitDistance, .max = kMaxOrbitDistance}, 1},
       .placeholder = "FACTOR",
-      .help = "Camera distance from its target, as a factor of the scene's distance.",
+      .help = "Camera distance from its target, as a multiple of the distance in the scene.",
       .in_scene = false},
     O{.key = "pan",
       .section = Section::camera,
@@ -113,7 +114,7 @@ constexpr std::array kOptions{
       .section = Section::render,
       .kind = O::Number{&S::filter_width, {.min = 0, .max = 16}, 0},
       .placeholder = "PIXELS",
-      .help = "Filter width in pixels; 0: the usual width of the filter."},
+      .help = "Filter width in pixels; 0: the default width of the filter."},
     O{.key = "path_reuse",
       .short_name = "reuse",
       .section = Section::render,
@@ -170,8 +171,8 @@ constexpr std::array kOptions{
     O{.key = "view",
       .section = Section::render,
       .kind = O::Enumeration<View>{&S::view, kViews},
-      .help = "Output: the image, or the error bound of each pixel as a colour: its cut light plus half the "
-              "difference of the halves of its samples.",
+      .help = "Output: the image, or the error bound of each pixel as a colour. The bound is the light of "
+              "untraced rays plus half the difference between the means of the two halves of the samples.",
       .in_scene = false},
     O{.key = "max_error",
       .short_name = "error",
@@ -194,8 +195,7 @@ constexpr std::array kOptions{
       .kind = O::Number{&S::seconds, {.min = 0, .max = kMaxBudgetSeconds}, 0},
       .placeholder = "SECONDS",
       .help = "Time limit in seconds for the whole response (orbit: for the first frame); 0: none. Samples, "
-              "depth "
-              "and precision are chosen automatically unless set.",
+              "depth and precision are chosen automatically unless set.",
       .in_scene = false},
     O{.key = "on_budget_miss",
       .short_name = "on_miss",
@@ -226,8 +226,8 @@ Fallback<V> missing(const V& fallback, bool in_schema) {
   return in_schema ? Fallback<V>(fallback) : derived(fallback);
 }
 
-// Reads the value of the option's key. Returns the default if the key is missing; `in_schema` says whether
-// the schema shows that default.
+// Reads the value of the option's key. Returns the default if the key is missing. `in_schema`: whether the
+// schema shows that default.
 template <class I>
 I read(Params& p, const O& o, const O::Integer<I>& kind, bool in_schema) {
   return static_cast<I>(p.integer(o.key, o.help, kind.min, kind.max, missing(kind.fallback, in_schema)));
@@ -378,7 +378,7 @@ void read_request_options(Params& p, Section section, RenderSettings& settings) 
 
 namespace {
 
-// Returns the defaults of a technique, or those of the default technique if it is not named.
+// Returns the defaults of a technique, or those of the default technique if `technique` is nullopt.
 RenderSettings defaults_of(const std::optional<std::string>& technique) {
   RenderSettings defaults = default_settings();
   for (const TechniqueType& type : technique_types())
@@ -410,14 +410,14 @@ void require_picture(const RenderSettings& settings, std::string_view what) {
 
 namespace {
 
-// Initial min_contribution with an error budget. It is the same for all errors, so that a smaller error never
-// yields a larger contribution.
+// Initial min_contribution with an error budget. It is the same for all error limits, so that a smaller limit
+// never leads to a larger value.
 constexpr double kMaxContribution = 1.0 / 16;
-// min_contribution with a time budget only: a quarter of one 8-bit code. It limits ray trees instead of their
-// depth, which costs hardly more for mirrors and less for branching glass.
+// min_contribution with a time limit only: a quarter of an 8-bit code. It limits ray trees in place of the
+// depth. This costs hardly more for mirrors and less for branching glass.
 constexpr double kTimedContribution = 0.001;
 
-// Sets every option that is left to the budget.
+// Sets every option that the budget may choose.
 void free_for_budget(RenderSettings& settings) {
   if (!settings.samples) settings.samples = kMaxSamples;
   if (!settings.max_depth) settings.max_depth = kMaxDepth;

@@ -13,9 +13,9 @@
 #include "core/model/render_settings.h"
 #include "core/params/params.h"
 
-// Table of the render options, one row each. Derived from it: reader and schema of scenes and requests, query
-// parameters, flags, limits, cache key and ETag of a picture, explain, statistics and OpenAPI. The table is
-// immutable and all functions are thread-safe.
+// Table of the render options, one row per option. The following derive from it: reader and schema of scenes
+// and requests, query parameters, flags, limits, cache key and ETag of an image, explain, statistics and
+// OpenAPI. The table is immutable and all functions are thread-safe.
 namespace orrery {
 
 struct Scene;
@@ -72,18 +72,19 @@ struct RenderOption {
   std::string_view short_name = {};  // alias in queries and flags; may be empty
   Section section;
   Kind kind;
-  std::string_view placeholder = {};  // name of the value in help; empty: its choices
+  std::string_view placeholder = {};  // name of the value in help; if empty, its choices
   std::string_view help;              // description in schemas and in help; ends with a full stop
-  bool in_scene = true;               // a scene may set it, as the default of its requests
-  bool changes_pixels = true;         // another value may give another picture
-  // Default of an integer that depends on the technique, or null. Schemas do not show it.
+  bool in_scene = true;               // a scene may set it, as the default for requests
+  bool changes_pixels = true;         // a different value may change the image
+  // Returns the default for a technique. Null unless the default of this integer option depends on the
+  // technique. Schemas do not show it.
   int (*by_technique)(const TechniqueType&) = nullptr;
 
   std::string pointer() const;     // JSON Pointer in a request: "/camera/azimuth_degrees"
   std::string value_name() const;  // "DEGREES", "true|false"
-  Names choices() const;           // allowed words; empty for other values
+  Names choices() const;           // allowed words; empty for numbers and points
 
-  // JSON type of a value, for code that makes JSON from text.
+  // JSON type of a value, for code that converts text to JSON.
   enum class Form { number, boolean, string, numbers, strings };
   Form form() const;
 
@@ -100,14 +101,14 @@ struct RenderOption {
 
 std::span<const RenderOption> render_options();
 
-// Returns the default of every option, with the default technique.
+// Returns the default of every option for the default technique.
 const RenderSettings& default_settings();
 
 // Read all options of a section; scenes may set only those with `in_scene`. No other code checks the ranges.
 void read_scene_options(Params& p, Section section, RenderSettings& settings);
 void read_request_options(Params& p, Section section, RenderSettings& settings);
 
-// Returns whether an error or a time limit is set.
+// Returns whether an error limit or a time limit above 0 is set.
 bool has_budget(const RenderSettings& settings);
 // Throws InputError if a budget is set. `what` names the output that does not support budgets.
 void require_no_budget(const RenderSettings& settings, std::string_view what);
@@ -115,22 +116,21 @@ void require_no_budget(const RenderSettings& settings, std::string_view what);
 void require_picture(const RenderSettings& settings, std::string_view what);
 
 // Returns a value for every option: from the request, else from the scene, else the default. The time is
-// clamped to the scene's motion. With a budget, samples, depth, precision and min_contribution are not taken
-// from the scene. If the request lacks them, samples and depth get their maximum, and precision is double.
-// min_contribution is then 1/16 with an error budget, which lowers it, or 0.001 with only a time limit.
-// Throws no errors of its own.
+// clamped to the scene's motion. With a budget, samples, depth, precision and min_contribution are never
+// taken from the scene. If the request omits them, samples and depth are set to their maximum, and precision
+// to double. min_contribution is then 0.001 for a time limit alone, or 1/16 for an error budget, which may
+// lower it during the render. Does not throw InputError.
 RenderSettings resolve(const Scene& scene, const RenderSettings& asked);
 
 // Returns the camera orbit. REQUIRES: the camera options are given.
 Orbit orbit_of(const RenderSettings& settings);
 
 // Returns the given options as JSON text of a request: {"camera": {...}, "image": {...}, "render": {...}}.
-// Empty members are left out. Reading the text gives the same settings.
+// Sections without options are omitted. Reading the text gives the same settings.
 std::string to_json(const RenderSettings& settings);
 
-// Returns a query with the settings that change pixels and differ from the scene's own:
-// "max_depth=12&samples=16", or "". The query renders a picture with the same bytes. REQUIRES: all settings
-// are given.
+// Returns a query string with the settings that change pixels and differ from those of the scene:
+// "max_depth=12&samples=16", or "". The query renders an identical image. REQUIRES: all settings are given.
 std::string query_of(const Scene& scene, const RenderSettings& settings);
 
 }  // namespace orrery

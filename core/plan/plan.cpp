@@ -56,7 +56,7 @@ class Planner {
     } else {
       plan_.cut_range = facts.tree_radiance.max_deviation(scene_.ambient);
       const bool negative = plan_.filtered && has_negative_lobes(*plan_.asked.filter);
-      if (!negative)  // rays that are cut return ambient light
+      if (!negative)  // untraced rays return ambient light
         plan_.sample_range = max_component(largest(facts.tree_radiance.most, scene_.ambient));
       leave_out_for_trees();
     }
@@ -112,7 +112,7 @@ class Planner {
     if (*asked.error > 0)
       decide("error", "at most " + number_text(*asked.error) + " RMS",
              "as specified, in " + std::string(name_of(plan_.space)) +
-                 " values; samples are added until the certificate promises it");
+                 " values; samples are added until the certificate meets this limit");
     if (*asked.seconds > 0) decide("seconds", "at most " + seconds(*asked.seconds), "as specified");
     if (plan_.free_samples)
       decide("samples", "at most " + std::to_string(plan_.samples), "chosen by the budget");
@@ -126,7 +126,7 @@ class Planner {
     plan_.shutter = asked;
     const bool all_at_once = plan_.samples == 1 && !plan_.technique->draws_light;
     decide("shutter", "open for " + seconds(asked),
-           all_at_once ? "the only sample is taken in the middle; more would be spread over the exposure"
+           all_at_once ? "the only sample is taken at mid-exposure; more samples would be spread over it"
                        : "each sample has its own time");
   }
 
@@ -156,7 +156,8 @@ class Planner {
     }
   }
 
-  // Chooses float if it is precise enough for all known rounding limits, else double.
+  // Uses the requested precision. For `auto`, chooses float if it satisfies all known rounding limits, else
+  // double.
   void choose_precision() {
     const Precision asked = *plan_.asked.precision;
     if (asked != Precision::automatic) {
@@ -180,8 +181,8 @@ class Planner {
         rounding_bound());
   }
 
-  // Returns the error of rounding. Float has no proven bound yet. Double is the reference and counts as
-  // exact.
+  // Returns the bound of the rounding error. It is unknown for float, which has no proven bound, and exact
+  // for double, which is the reference.
   Bound rounding_bound() const { return plan_.double_precision ? Bound() : Bound::unknown(); }
 
   void choose_accelerator() {
@@ -196,7 +197,7 @@ class Planner {
     plan_.accelerator = find_type(accelerator_types(), few ? "list" : "bvh");
     decide("accelerator", plan_.accelerator->name,
            few ? "with at most " + std::to_string(kFewPrimitives) +
-                     " primitives, testing each is cheaper than any structure"
+                     " primitives, testing all of them is cheaper than any structure"
                : "the fastest structure on every measured scene with more than " + std::to_string(kMaxTries) +
                      " primitives, and for paths");
   }
@@ -224,14 +225,15 @@ class Planner {
         any_light([](const LightSet& lights, int) { return lights.traits().parallel; });
     plan_.constant_half = parallel_light && plan_.camera->parallel();
     if (plan_.constant_half)
-      decide("half vector", "computed once", "viewer and light are parallel, so it is the same everywhere");
+      decide("half vector", "computed once",
+             "view and light have constant directions, so it is the same everywhere");
     plan_.shadows = !lonely_convex() || scene_.facts.materials.transmits;
     decide("shadows", plan_.shadows ? "traced" : "none",
            plan_.shadows ? "objects may block light"
                          : "the only object is convex and seen from outside: nothing blocks its light");
   }
 
-  // Reports scene features that only path techniques render.
+  // Reports scene features that only distributed and path render.
   void leave_out_for_trees() {
     const std::string only =
         std::string(plan_.technique->name) + " does not model it; distributed and path do";
@@ -275,11 +277,11 @@ class Planner {
   void choose_reuse() {
     const bool shares = plan_.max_depth >= 2 && scene_.facts.materials.lit && plan_.shutter == 0;
     plan_.reuse = shares ? static_cast<int>(std::bit_floor(static_cast<unsigned>(*plan_.asked.reuse)))
-                         : 1;  // must divide a tile
+                         : 1;  // must divide the size of a tile
     decide("path reuse", plan_.reuse > 1 ? "groups of " + std::to_string(plan_.reuse) : "none",
            plan_.reuse > 1     ? "connections to vertices of other paths cost less than new paths"
            : shares            ? "as specified"
-           : plan_.shutter > 0 ? "paths at different times cross different scenes"
+           : plan_.shutter > 0 ? "paths at different times see different geometry"
                                : "no path has a second vertex that receives light");
   }
 
@@ -297,7 +299,7 @@ class Planner {
                     std::string(plan_.technique->name) + " traces none", Bound::unknown());
     }
     if (!used.transmits) decide("refracted rays", "none", "no material in use is transparent");
-    if (!plan_.filters) decide("absorption in bodies", "none", "no material in use absorbs light inside");
+    if (!plan_.filters) decide("absorption inside objects", "none", "no material in use absorbs light");
     if (!used.transmits && lonely_convex() && plan_.max_depth > 1) {
       plan_.max_depth = 1;
       decide("depth", "1", "the only object is convex: its reflected rays hit nothing");
@@ -316,8 +318,8 @@ class Planner {
     return is_free(request_.min_contribution) ? "a quarter of an 8-bit code" : "as specified";
   }
 
-  // Returns an a-priori bound of rays that are not traced, of this total weight. The bound measured while
-  // rendering is tighter.
+  // Returns an a-priori bound on the light of untraced rays with this total weight. The bound measured during
+  // the render is tighter.
   Bound cut_bound(double weight) const {
     const double radiance = weight * max_component(plan_.cut_range);
     const double most = plan_.space == Space::display ? encode_srgb(radiance) : radiance;
@@ -332,7 +334,8 @@ class Planner {
     });
   }
 
-  // Returns whether the scene is one convex primitive with the eye certainly outside it.
+  // Returns whether the scene is a single convex primitive that cannot contain the eye: an open one, or a
+  // closed one whose bounds exclude the eye.
   bool lonely_convex() const {
     if (scene_.primitive_count() != 1) return false;
     for (const auto& shapes : scene_.shapes) {
@@ -364,7 +367,7 @@ RenderSettings settings_of(const Plan& plan) {
   RenderSettings settings = plan.asked;
   settings.accelerator = plan.accelerator->name;
   settings.precision = plan.double_precision ? Precision::double_precision : Precision::single_precision;
-  // The plan may have reduced the depth for this view only.
+  // The plan may have reduced the depth because of this view.
   settings.max_depth = plan.max_depth == 0 ? 0 : *plan.asked.max_depth;
   settings.min_contribution = plan.min_contribution;
   return settings;

@@ -5,10 +5,10 @@
 
 namespace orrery {
 
-// Settings of one render. A setting without a value is taken from the scene.
+// Settings of one render. resolve() replaces missing settings by those of the scene or by defaults.
 struct RenderRequest : RenderSettings {
-  bool full_model = false;   // plan every stage; the picture must not change
-  int slice = Plan{}.slice;  // 16..kBatch
+  bool full_model = false;   // keep stages that the scene does not need; same image
+  int slice = Plan{}.slice;  // rays per slice, 16 to kBatch; see Plan::slice
 
   bool operator==(const RenderRequest&) const = default;
 };

@@ -8,10 +8,10 @@
 namespace orrery {
 namespace {
 
-constexpr double kRoundings = 8;      // hit error, in epsilons of the largest coordinate
-constexpr double kMaxOfLength = 0.1;  // allowed hit error, as a share of a visible length
-constexpr double kMaxTurn = 0.02;     // radians, allowed error of a mirrored ray
-// Smallest length, in metres, whose third power is a normal float, even for parts a hundred times smaller.
+constexpr double kRoundings = 8;      // error of a hit / (epsilon x largest coordinate)
+constexpr double kMaxOfLength = 0.1;  // allowed error of a hit / smallest visible length
+constexpr double kMaxTurn = 0.02;     // radians, allowed error of a mirrored ray's direction
+// Smallest length in metres for which the cube of a length a hundred times smaller is a normal float.
 constexpr double kMinLengthInFloat = 1e-10;
 
 std::string metres(double x) { return number_text(x) + " m"; }
@@ -49,7 +49,9 @@ class Limits {
           what + ", with coordinates up to " + metres(magnitude_.value) + " (" + magnitude_.where + ")"});
   }
 
-  // Returns the width of a pixel in metres, at the nearest bounded primitive or at look_at if that is nearer.
+  // Returns the width of a pixel in metres at the bounding box of the scene, or at look_at if that is nearer.
+  // The distance to the box is at least 1/16 of its diagonal. Parallel cameras have the same width
+  // everywhere.
   double footprint() const {
     const double pixel = 2 * plan_.frame.half_extent / plan_.height;
     if (plan_.camera->parallel()) return pixel;

@@ -13,11 +13,11 @@
 namespace orrery {
 namespace {
 
-// Maximum numbers of primitives examined, so that warnings take milliseconds for any scene.
+// Maximum numbers of primitives examined, in all and with bounds around the eye. Warnings then take
+// milliseconds for any scene.
 constexpr int kMaxPrimitives = 20'000, kMaxAround = 8;
 
-constexpr double kMaxReflected =
-    1.005;  // reflected share of light that is accepted, with a margin for rounding
+constexpr double kMaxReflected = 1.005;  // accepted reflectance, with a margin for rounding
 
 std::string percents(double share) {
   char text[32];
@@ -35,7 +35,7 @@ bool is_unlit(const Scene& scene, const Plan& plan) {
          !lit_from_around;
 }
 
-// View volume of the camera: the space on one side of each plane.
+// View volume of the camera: the intersection of the half-spaces of five planes.
 class View {
  public:
   explicit View(const Plan& plan)
@@ -45,7 +45,7 @@ class View {
         half_height_(plan.frame.half_extent),
         half_width_(half_height_ * plan.width / plan.height) {}
 
-  // Returns whether the box is entirely outside one of the planes. False for an infinite box.
+  // Returns whether the box is entirely outside one of the planes. Always false for an all-around camera.
   bool misses(const Affined& world_from_box, const Boundsd& box) const {
     if (all_around_) return false;
     std::array<bool, 5> beyond;
@@ -101,7 +101,8 @@ bool any_shapes(const Scene& scene, double time, const Visit& visit) {
   return false;
 }
 
-// Returns false if more than kMaxPrimitives would have to be examined.
+// Returns whether the bounds of all primitives are outside the view. Returns false if there are more than
+// kMaxPrimitives.
 bool nothing_in_view(const Scene& scene, const Plan& plan) {
   if (plan.shutter > 0) return false;  // motion into the view is not examined
   const View view(plan);
@@ -121,7 +122,7 @@ bool is_transparent(const Scene& scene, std::int32_t material) {
   return false;
 }
 
-// Tests the surroundings of one point with single rays.
+// Tests what surrounds a point, with single rays.
 class Surroundings {
  public:
   Surroundings(const Scene& scene, const Vec3d& point) : point_(point) { find_lights(scene); }
@@ -138,7 +139,7 @@ class Surroundings {
     return met_.side[0] < 0;
   }
 
-  // Returns whether some light source reaches the point without being shadowed by the primitive.
+  // Returns whether some light source illuminates the point without being occluded by primitive `index`.
   bool lit_past(const ShapeKernel<double>& kernel, int index, const Affined& model_from_world) {
     return std::any_of(lights_.begin(), lights_.end(), [&](const ToLight& light) {
       send(light, model_from_world);
@@ -190,8 +191,8 @@ bool overlap(const Boundsd& a, const Boundsd& b) {
          b.lo.z <= a.hi.z;
 }
 
-// Returns whether another primitive than the one with these bounds overlaps them. Returns true after
-// kMaxPrimitives.
+// Returns whether several primitives overlap these bounds, i.e. any besides the primitive that has them. Also
+// returns true after kMaxPrimitives.
 bool holds_others(const Scene& scene, const Plan& plan, const Boundsd& bounds) {
   int overlapping = 0, seen = 0;
   return any_shapes(scene, plan.time, [&](const ShapesAt& shapes, const Affined& world, const auto*) {
@@ -205,7 +206,7 @@ bool holds_others(const Scene& scene, const Plan& plan, const Boundsd& bounds) {
 }
 
 // Returns whether the eye is inside a closed opaque shape that hides all lights and contains nothing visible.
-// Gives up after kMaxPrimitives primitives, and after kMaxAround whose bounds contain the eye.
+// Returns false after kMaxPrimitives primitives, and after kMaxAround whose bounds contain the eye.
 bool is_enclosed(const Scene& scene, const Plan& plan) {
   const bool glows = scene.ambient != Vec3d(0) || scene.facts.materials.emits;
   int seen = 0, around = 0;
@@ -235,7 +236,8 @@ bool is_enclosed(const Scene& scene, const Plan& plan) {
   return enclosed;
 }
 
-// Returns the first smooth primitive, i.e. one with a specular lobe, or -1. Examines kMaxPrimitives.
+// Returns the first smooth primitive, i.e. one with a specular lobe, or -1. Examines the first
+// kMaxPrimitives.
 int smooth_primitive(const Scene& scene) {
   std::vector<char> smooth;  // indexed by material
   for (const auto& set : scene.materials) {
@@ -249,8 +251,9 @@ int smooth_primitive(const Scene& scene) {
   return -1;
 }
 
-// Returns a light that no sampled direction can hit, together with a smooth surface. Paths from the light
-// over that surface to a lit surface have probability 0. `detail` is empty if there is no such pair.
+// Returns a warning about the first light that no sampled direction can hit, if there is a smooth surface.
+// Paths from the light by way of that surface to a lit surface have probability 0. `detail` is empty if there
+// is nothing to warn about.
 Problem lost_caustic(const Scene& scene, const Plan& plan) {
   if (!plan.technique->interreflects || !scene.facts.materials.lit || plan.max_depth < 2) return {};
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
@@ -268,9 +271,8 @@ Problem lost_caustic(const Scene& scene, const Plan& plan) {
       std::snprintf(instead, sizeof instead, "use a sphere lamp of radius %.1g m instead",
                     0.01 * (scene.facts.bounds.bounded() ? scene.facts.bounds.diagonal() : 1.0));
     return {"/lights/" + std::to_string(i),
-            "caustics by way of " + pointer_to_object(scene, smooth) +
-                ", which mirrors or refracts, are left out (no path can hit a light without extent); " +
-                instead};
+            "caustics of this light via " + pointer_to_object(scene, smooth) +
+                " are not rendered (no path can hit a light without extent); " + instead};
   }
   return {};
 }
@@ -286,7 +288,7 @@ std::vector<Problem> warnings(const Scene& scene, const Plan& plan, bool empty) 
     found.push_back(
         {most.where + "/material",
          "material reflects up to " + percents(most.value) +
-             " of the incoming light; plastic and non-strict metallic-roughness create no light"});
+             " of the incoming light; plastic and non-strict metallic-roughness conserve energy"});
   if (Problem lost = lost_caustic(scene, plan); !lost.detail.empty()) found.push_back(std::move(lost));
   if (empty) found.push_back({"/camera", "nothing is in view; the image shows only the background"});
   return found;

@@ -16,11 +16,11 @@ class EmitterList {
   EmitterList(const Scene& scene, const Exposure& exposure, Geometry<T>& geometry)
       : scene_(scene), exposure_(exposure), geometry_(geometry) {}
 
-  // Returns the bounds of the emitters: first those of the scene's sets, then those of its instances.
+  // Finds the emitters of the shape sets of the scene, then those of its instances. Returns their bounds.
   std::vector<LightBounds> find() {
     for (const auto& shapes : scene_.shapes) {
       const auto last = primitive_ + static_cast<std::size_t>(shapes->size());
-      if (skip_to_emitter(last)) {  // skips posing of sets without emitters
+      if (skip_to_emitter(last)) {  // a set without emitters need not be posed
         const auto posed = shapes->at(exposure_.opens);
         add(*shapes, posed ? *posed : *shapes, last, nullptr);
       }
@@ -50,13 +50,13 @@ class EmitterList {
     return scene_.emission[static_cast<std::size_t>(scene_.material_of[primitive])];
   }
 
-  // Advances to the next primitive that emits. Returns false if there is none before `last`.
+  // Advances primitive_ to the next emitting primitive. Returns false if none precedes `last`.
   bool skip_to_emitter(std::size_t last) {
     while (primitive_ < last && radiance_of(primitive_) == Vec3d(0)) interruption_point(++primitive_);
     return primitive_ < last;
   }
 
-  // Returns true if at most `most` primitives from here on emit.
+  // Returns true if at most `most` primitives from primitive_ on emit.
   bool emits_at_most(std::size_t most) const {
     std::size_t count = 0;
     for (std::size_t p = primitive_; p < scene_.material_of.size() && count <= most; ++p) {
@@ -66,7 +66,8 @@ class EmitterList {
     return count <= most;
   }
 
-  // Adds the emitters of a set whose primitives end before `last`.
+  // Adds the emitters of a set, from primitive_ to `last` - 1. `now` is the set at the start of the exposure.
+  // world_from_model is null if the set is not part of an instance.
   void add(const ShapeSet& shapes, const ShapeSet& now, std::size_t last, const Affined* world_from_model) {
     for (int i = now.size() - static_cast<int>(last - primitive_); primitive_ < last; ++i, ++primitive_) {
       interruption_point(primitive_);
@@ -93,8 +94,8 @@ class EmitterList {
     if (emitter.is_solid() && holds_all(now.bounds(index))) return {};
     return emitter;
   }
-  // Returns true if the rest of the scene lies within the box. The solid is then seen from inside, where no
-  // light is sampled.
+  // Returns true if the box contains the whole scene. A solid with this box is then seen from inside, from
+  // where it is not sampled.
   bool holds_all(const Boundsd& box) const {
     const Boundsd& all = scene_.facts.bounds;
     return scene_.material_of.size() > 1 && !scene_.facts.unbounded && box.contains(all.lo) &&

@@ -13,9 +13,9 @@ namespace {
 
 using ShapeSets = std::vector<std::unique_ptr<ShapeSet>>;
 
-// Adds kernels of the sets and their primitives, numbered from `number` on. `before` (or null) holds the
-// kernels at another moment; those of static sets are reused. Shapes that move during the exposure get
-// separate kernels in `moving`, which must be queried for surfaces after all others.
+// Adds the kernels of the sets and their primitives, numbered from `number`. `before` is null or contains the
+// kernels for another exposure. Kernels of static sets are reused. Shapes that move during the exposure get
+// additional kernels in `moving`. These must fill surfaces after all other kernels.
 template <class T>
 void add_shapes(const ShapeSets& sets, const Exposure& exposure, const std::vector<ShapeKernelPtr<T>>* before,
                 std::vector<ShapeKernelPtr<T>>& kernels, std::vector<ShapeKernelPtr<T>>& moving,
@@ -66,8 +66,9 @@ PlacedInstance<T> place(const std::shared_ptr<const ModelGeometry<T>>& model, co
                         int first) {
   const Affined model_from_world = inverse(world_from_model);
   // Rows of the inverse are perpendicular, because instances are scaled before they are rotated. Rounding
-  // therefore moves a point across its surface in proportion to its coordinates, however uneven the scale.
-  // The factor 2 exceeds sqrt(3), the largest ratio of the sum of three rows' errors to their length.
+  // therefore moves a point across its surface in proportion to its coordinates, even if the scale is not
+  // uniform. The factor 2 exceeds sqrt(3), the largest ratio of the sum of the errors of three rows to their
+  // length.
   const double base =
       2 * 8 * double{std::numeric_limits<T>::epsilon()} * max_component(abs(world_from_model.origin));
   return {model,
@@ -79,7 +80,7 @@ PlacedInstance<T> place(const std::shared_ptr<const ModelGeometry<T>>& model, co
           static_cast<T>(base)};
 }
 
-// Adds the instances. Those that move during the exposure get a separate kernel in `moving`.
+// Adds the instances. Instances that move during the exposure get a separate kernel in `moving`.
 template <class T>
 void add_instances(const Scene& scene, const AcceleratorType& inner, const Exposure& exposure,
                    const Geometry<T>* before, Geometry<T>& geometry, std::vector<ShapeKernelPtr<T>>& moving,

@@ -13,8 +13,8 @@ namespace {
 template <class T>
 using Moments = std::list<PreparedScene::Parts::Moment<T>>;
 
-// Moves the moment of `exposure` to the front. Adds it if necessary, and then evicts the last of too many
-// moments.
+// Moves the moment of `exposure` to the front. Adds it if it is missing, and then evicts the last moment if
+// there are more than kMoments.
 template <class T>
 void move_to_front(Moments<T>& moments, const Exposure& exposure) {
   const auto known =
@@ -24,8 +24,8 @@ void move_to_front(Moments<T>& moments, const Exposure& exposure) {
   if (moments.size() > PreparedScene::kMoments) moments.pop_back();
 }
 
-// Returns the newest world built with this accelerator type for a moment other than the first, or an empty
-// world.
+// Returns the most recently used world with this accelerator type, except that of the first moment. Returns
+// an empty world if there is none.
 template <class T>
 World<T> world_before(const Moments<T>& moments, const AcceleratorType& type) {
   for (auto moment = std::next(moments.begin()); moment != moments.end(); ++moment)
@@ -33,8 +33,8 @@ World<T> world_before(const Moments<T>& moments, const AcceleratorType& type) {
   return {};
 }
 
-// Opens a memory account for a build, from the source of the current client's account. Returns null if memory
-// is not counted.
+// Opens a memory account for a build, with the source of the current account. Returns null if memory is not
+// counted.
 std::shared_ptr<MemoryAccount> open_account(PreparedScene::Parts& parts) {
   const MemoryAccount* const client = TaskScope::current().memory;
   if (!client) return nullptr;
@@ -64,7 +64,7 @@ World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& type, con
     world = {geometry, build_or_refit(type, geometry->primitives, before.accelerator.get())};
   };
   const auto memory = open_account(parts);
-  const TaskScope scope({nullptr, &stop});  // no turn: the owner of the mutex must not yield
+  const TaskScope scope({nullptr, &stop});  // no time slice, because the owner of the mutex must not yield
   if (memory)
     memory->run(stop, make);
   else

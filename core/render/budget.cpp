@@ -21,20 +21,20 @@
 namespace orrery {
 namespace {
 
-constexpr double kNearLeast = 1.25;  // factor on the smallest provable error
-// Shares of the error for rays that are not traced. The share is smaller in a pilot, which sees few such
-// rays.
+constexpr double kNearLeast = 1.25;  // accepted bound / smallest provable error
+// Maximum fractions of the requested error that untraced rays may cause, in a pass and in a pilot. The
+// fraction is smaller for a pilot, which samples few such rays.
 constexpr double kShareOfCuts = 0.125, kShareOfPilot = kShareOfCuts / 2;
-// Divisors of min_contribution after a pilot and after a pass, and how often each is applied at most.
+// Divisors of min_contribution after a pilot and after a pass, and maximum numbers of pilots and of restarts.
 constexpr double kStep = 4, kStepOfPass = 16;
 constexpr int kMaxPilots = 10, kMaxRefinements = 3;
 // Cut rays count as heavy if their mean weight is at least this multiple of min_contribution.
 constexpr double kHeavy = 10;
-constexpr double kShareOfPilots = 0.25;  // maximum share of the time limit
-constexpr double kSlower = 1.1;          // factor on the time of the last pass
-constexpr double kLastPassReach = 4.4;   // beyond this factor on the samples, several passes are left
-constexpr int kSeenTiles = 16;           // tiles of the first pass before its time is predicted
-constexpr double kSurelyLate = 1.5;      // factor on the time limit
+constexpr double kShareOfPilots = 0.25;  // fraction of the time limit after which no pilot starts
+constexpr double kSlower = 1.1;          // safety factor on the time per sample of the last pass
+constexpr double kLastPassReach = 4.4;   // if time allows less than this factor, one last pass uses it
+constexpr int kSeenTiles = 16;           // tiles of the first pass before its end is predicted
+constexpr double kSurelyLate = 1.5;      // predicted end / time limit to abandon the first pass
 constexpr double kShareOfEncoding = 0.02, kEncodedPixelsPerSecond = 8e6;
 
 constexpr const char* kNoMemory = "not enough memory for another pass";
@@ -56,11 +56,11 @@ class BudgetedRender {
     made_.certificate = certify(*made_.plan, made_.stats, alpha_of_look(1));  // no samples yet
     if (fails_on_miss() && error_ > 0 && !is_provable()) throw BudgetMissed(outcome(), made_.certificate);
     choose_contribution();
-    while (!render_passes()) {  // a pass found light that the pilots missed
+    while (!render_passes()) {  // a pass found omitted light that the pilots missed
       made_.plan = made_.plan.with_min_contribution(made_.plan->min_contribution / kStepOfPass);
       ++refinements_;
     }
-    made_.stats.counts.add(discarded_.counts);  // discarded rays were traced, too
+    made_.stats.counts.add(discarded_.counts);  // the cost includes discarded rays
     made_.stats.build_ms += discarded_.build_ms;
     made_.stats.trace_ms += discarded_.trace_ms;
     made_.stats.cpu_ms += discarded_.cpu_ms;
@@ -100,8 +100,9 @@ class BudgetedRender {
 
   bool fails_on_miss() const { return *made_.plan->asked.on_miss == OnMiss::fail; }
 
-  // Returns the error probability of the `look`-th certificate, counted from 1, which may end the render. If
-  // the samples are given, only the last certificate counts.
+  // Returns the error probability of the `look`-th certificate, counted from 1. Each certificate may end the
+  // render, so the probabilities add up to at most kAlpha. If the number of samples is requested, only the
+  // last certificate counts, with kAlpha.
   double alpha_of_look(int look) const {
     return Certificate::kAlpha * (made_.plan->free_samples ? std::exp2(-look) : 1);
   }
@@ -111,14 +112,15 @@ class BudgetedRender {
   double used_s() const {
     return ahead_s_ + (control_.used_s ? control_.used_s() : milliseconds_since(begin_) / 1000);
   }
-  // Returns the time at which tracing must end to leave time for encoding.
+  // Returns the time, in seconds as in used_s(), at which tracing must end to leave time for encoding.
   double deadline_s() const {
     const double pixels = double(made_.plan->width) * made_.plan->height;
     return limit_s_ * (1 - kShareOfEncoding) - pixels / kEncodedPixelsPerSecond;
   }
 
-  // Chooses min_contribution by pilots if it is free. Takes the largest value for which omitted rays cause a
-  // small part of the error, or are mostly cut by depth.
+  // Chooses min_contribution with pilots, if it is free. Reduces it until untraced rays cause at most
+  // kShareOfPilot of the error, or are mostly cut by depth, or until the limits of pilots or time are
+  // reached.
   void choose_contribution() {
     if (!made_.plan->free_contribution) return;
     for (int pilots = 1;; ++pilots) {
@@ -133,15 +135,15 @@ class BudgetedRender {
     }
   }
 
-  // Returns whether nearly all omitted light is due to depth, so that a smaller min_contribution would not
-  // help. A ray cut by its weight weighs less than min_contribution.
+  // Returns whether nearly all omitted light is due to the depth limit, so that a smaller min_contribution
+  // would not help. A ray that is cut by its weight has a weight below min_contribution.
   bool are_too_deep(const RenderStats& stats) const {
     const auto& [x, y, z] = made_.plan->cut_range;
     const double least = made_.plan->min_contribution * (x + y + z);
     return stats.omitted.sum >= kHeavy * least * static_cast<double>(stats.counts.cut_rays);
   }
 
-  // Adds the cost of rays that are not in the picture.
+  // Adds the cost of rays that do not contribute to the image.
   void discard(const RenderStats& traced) {
     discarded_.counts.add(traced.counts);
     discarded_.trace_ms += traced.trace_ms;
@@ -152,7 +154,7 @@ class BudgetedRender {
     return certificate.terms.front().bound.rms.value_or(0);
   }
 
-  // Renders the passes. Returns false if weaker rays must be traced, too.
+  // Renders the passes. Returns false if they must restart with a smaller min_contribution.
   bool render_passes() {
     made_.samples = 0;
     const auto passes = begin_passes();
@@ -173,7 +175,7 @@ class BudgetedRender {
       }
       if (is_enough()) break;
     }
-    if (before_) {  // no time or memory for a better picture
+    if (before_) {  // no time or memory for a better image
       if (made_.samples > 0) discard(made_.stats);
       made_ = std::move(*before_);
     } else if (!made_.film) {
@@ -182,7 +184,7 @@ class BudgetedRender {
     return true;
   }
 
-  // Returns null if a picture exists and there is no memory for another.
+  // Returns null if there is an earlier image but no memory for another.
   std::unique_ptr<ProgressiveRender> begin_passes() try {
     return std::make_unique<ProgressiveRender>(scene_, made_.plan, pool_, control_.stop);
   } catch (const std::bad_alloc&) {
@@ -201,8 +203,8 @@ class BudgetedRender {
     return of_a && (!of_b || *of_a < *of_b);
   }
 
-  // Traces one pass. Returns false if time is up, or if there is no memory to copy the film. The film of the
-  // passes before is then the last one. Throws BudgetMissed if the first pass is late.
+  // Traces one pass. Returns false if the time limit is reached, or if there is no memory to copy the film.
+  // The result is then the film of the previous pass. Throws BudgetMissed if the first pass is abandoned.
   bool trace(ProgressiveRender& passes, int samples) {
     if (is_timed() && made_.samples > 0 && !keep(passes.film())) return false;
     std::stop_source late;
@@ -238,8 +240,8 @@ class BudgetedRender {
     return false;
   }
 
-  // Returns whether the first pass will surely end late. REQUIRES: the tiles that are done cover the whole
-  // picture.
+  // Returns whether the first pass is late or is predicted to be late by far. REQUIRES: the finished tiles
+  // are spread over the whole image.
   bool is_surely_late(double begin_s, int done, int total) {
     const double now_s = used_s();
     if (done == total) return false;
@@ -257,7 +259,7 @@ class BudgetedRender {
   }
 
   static bool is_not_sampling(const Certificate::Term& term) { return term.subject != Certificate::kSamples; }
-  // Returns the RMS of all terms but the samples, or nullopt if it is unknown.
+  // Returns the RMS bound of all terms except the sampling error, or nullopt if it is unknown.
   std::optional<double> rest() const { return made_.certificate.total_of(is_not_sampling).rms; }
   double rest_known() const {
     return *made_.certificate
@@ -269,15 +271,15 @@ class BudgetedRender {
 
   bool is_proved() const { return made_.certificate.total().rms && *made_.certificate.total().rms <= error_; }
 
-  // Returns whether the samples are those of the request. Only a time limit may reduce requested samples.
+  // Returns whether the image has the requested samples. Only a time limit of the request may reduce them.
   bool has_samples_asked() const {
     return made_.plan->free_samples || seconds_ > 0 || made_.samples == made_.plan->samples;
   }
 
   bool is_provable() const { return least() && *least() <= error_; }
 
-  // Returns whether the error is proved, or is so close to the smallest provable error that more samples are
-  // not worth their cost. A smaller requested error never takes fewer samples.
+  // Returns whether the error is proved, or whether the bound is so close to the smallest provable error that
+  // more samples are not worth their cost. A smaller error limit never leads to fewer samples.
   bool is_near_enough() const {
     const SampledError& error = made_.stats.error;
     if (!error.known()) return false;
@@ -294,7 +296,7 @@ class BudgetedRender {
     return error_ > 0 && (is_hopeless() || (made_.plan->free_samples && is_near_enough()));
   }
 
-  // Returns whether a miss is an error and no number of samples avoids it.
+  // Returns whether a miss is an error and no number of samples can avoid it.
   bool is_hopeless() const { return fails_on_miss() && !is_provable(); }
 
   bool is_too_coarse() const {
@@ -331,8 +333,8 @@ class BudgetedRender {
     }
     const double rays = rays_per_sample_ * next;
     if (rays <= control_.max_rays) return next;
-    reason_ = "twice as many samples take " + rounded(rays) + " rays (limit " + rounded(control_.max_rays) +
-              ", request_rays)";
+    reason_ = "twice as many samples would take " + rounded(rays) + " rays (limit " +
+              rounded(control_.max_rays) + ", request_rays)";
     return 0;
   }
 
@@ -368,7 +370,7 @@ class BudgetedRender {
     if (!reason_.empty()) return reason_;
     const bool near = *made_.certificate.total().rms <= kNearLeast * *least();
     return near ? "more samples hardly reduce the provable error (smallest: " + rounded(*least()) + ")"
-                : "limit of samples reached";
+                : "sample limit reached";
   }
 
   std::string late_reason() const {
@@ -391,23 +393,23 @@ class BudgetedRender {
   const double error_, seconds_;  // 0: no limit
   const double limit_s_;          // time limit; may be infinite
   const Clock::time_point begin_;
-  double ahead_s_ = 0;  // added to the clock by a forecast
+  double ahead_s_ = 0;  // seconds that a forecast adds to the clock
   int refinements_ = 0, looks_ = 0;
-  bool gave_up_ = false;                                // a pass other than the first was given up
-  std::atomic<bool> is_late_ = false;                   // the first pass was late and was given up
-  std::atomic<double> min_s_ = 0.0;                     // predicted end of a first pass that was given up
+  bool gave_up_ = false;                                // a pass other than the first was abandoned
+  std::atomic<bool> is_late_ = false;                   // the first pass was late and was abandoned
+  std::atomic<double> min_s_ = 0.0;                     // predicted end of an abandoned first pass
   double pass_s_per_sample_ = 0, rays_per_sample_ = 0;  // last complete pass
-  RenderStats discarded_;                               // pilots, and pictures that cut too much
-  // Picture after `samples` samples per pixel.
+  RenderStats discarded_;                               // pilots, and passes that cut too many rays
+  // Image after `samples` samples per pixel.
   struct Made {
     SettledPlan plan;
     RenderStats stats = {};
     Certificate certificate = {};
     int samples = 0;
-    std::optional<Film> film = {};  // set while a pass may be given up, and in the end
+    std::optional<Film> film = {};  // set while a pass may be abandoned, and at the end
   };
   Made made_;
-  std::optional<Made> before_;  // picture with fewer rays, until a better one exists
+  std::optional<Made> before_;  // image with a larger min_contribution, until there is a better one
   std::string reason_;          // why there was no further pass
 };
 

@@ -17,7 +17,7 @@ double display_rms(double mean) {
   return std::min(1.0, std::sqrt(mean < kTouches ? kSlope * mean : encoded * encoded) + kCurveError);
 }
 
-// Returns the bound of light that was taken away. An estimated bound has no maximum.
+// Returns the bound for light that was removed. An estimated bound has no maximum.
 Bound bound_of(const Plan& plan, const OmissionLedger& away, bool proved) {
   const bool display = plan.space == Space::display;
   const double max = display ? display_max(away.max()) : away.max();
@@ -25,7 +25,7 @@ Bound bound_of(const Plan& plan, const OmissionLedger& away, bool proved) {
   return proved ? Bound::proved(max, rms) : Bound::estimated(rms);
 }
 
-// Bounds rays that were not traced, from the ledger. Weights of paths are random, so their bound is an
+// Bounds the light of untraced rays, from the ledger. Path weights are random, so the bound for paths is an
 // estimate.
 Certificate::Term omitted_term(const Plan& plan, const RenderStats& stats) {
   const char* const subject = "rays not traced";
@@ -51,10 +51,10 @@ Certificate::Term precision_term(const Plan& plan) {
   return {"precision", Bound::unknown(), "no ray was traced in double precision for comparison"};
 }
 
-// Returns whether the errors of a tile's pixels are correlated. If they are independent, means over tiles
-// have 1/1024 of the pixels' mean square error, times chi^2 over its degrees of freedom. There is one degree
-// per tile if all tiles err alike. The limit is the quantile of z (Wilson, Hilferty 1931), exceeded by a
-// chance of 1e-7.
+// Returns whether the errors of a tile's pixels are correlated. If they are independent, the mean square
+// error of tile means is 1/1024 of that of pixels, times chi^2 over its degrees of freedom. There is one
+// degree of freedom per tile if all tiles have equal errors. The limit is a quantile of chi^2 (Wilson,
+// Hilferty 1931), exceeded with probability 1e-7.
 bool pixels_are_alike(const SampledError& error) {
   constexpr double kMinTiles = 16, kZ = 5.2;
   const double pixel = error.pixel.rmse(), tile = error.block32.rmse();
@@ -64,24 +64,25 @@ bool pixels_are_alike(const SampledError& error) {
 }
 
 // Bounds the sampling error. For means a and b of the halves, (a - b)^2 / 4 is on average at least the
-// squared error of their mean. No difference exceeds the range. A display clips bright values that few
-// samples find. The light that is hidden is about the excess that one half found and the other did not. (If
-// one more sample is too weak to be clipped, it shows in the difference.)
+// squared error of their mean. No difference exceeds the range of a sample. A display clips bright values
+// that few samples find. This hides an error of about the light beyond the range that only one half found. (A
+// sample that is too dim to be clipped appears in the difference.)
 Certificate::Term sampling_term(const Plan& plan, const RenderStats& stats, double doubt) {
   const char* const subject = Certificate::kSamples;
   if (!stats.error.known())
-    return {subject, Bound::unknown(), "the error can be estimated only for an even number"};
+    return {subject, Bound::unknown(), "the error can be estimated only for an even number of samples"};
   if (!stats.halves.known()) return {subject, Bound::unknown(), "radiance of a sample is unbounded"};
   const bool reused = plan.reuse > 1;
   if (!reused && pixels_are_alike(stats.error))
-    return {subject, Bound::unknown(), "errors of the pixels of a tile are correlated"};
+    return {subject, Bound::unknown(), "pixel errors within a tile are correlated"};
   const double beyond = plan.beyond_range(stats.error.samples), part = beyond > 0 ? doubt / 2 : doubt;
   const double seen = plan.halves_range() * std::sqrt(stats.halves.upper_mean(part, reused)) / 2;
   if (beyond == 0) return {subject, Bound::estimated(seen)};
   return {subject, Bound::estimated(seen + display_rms(stats.halves.upper_beyond(part, beyond)))};
 }
 
-// Bounds the rounding to 8-bit codes: half a code at most, and uniformly distributed if it was not measured.
+// Bounds the rounding to 8-bit codes, which is at most half a code. If it was not measured, a uniform
+// distribution is assumed.
 Certificate::Term encoding_term(const RenderStats& stats) {
   const char* const subject = "8-bit codes";
   constexpr double kHalf = 0.5 / 255;
@@ -126,7 +127,7 @@ Certificate certify(const Plan& plan, const RenderStats& stats, double doubt) {
   }
   if (stats.non_finite_pixels > 0)
     found.terms.push_back({"non-finite values", Bound::unknown(),
-                           std::to_string(stats.non_finite_pixels) + " pixels have such a value"});
+                           std::to_string(stats.non_finite_pixels) + " pixels are not finite"});
   return found;
 }
 

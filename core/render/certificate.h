@@ -10,12 +10,12 @@
 
 namespace orrery {
 
-// Error of a picture relative to its reference, in the plan's space. The reference is the picture of the same
-// technique without cuts, with infinitely many samples per pixel and exact arithmetic. Light that the
-// technique does not follow is missing in the reference, too.
+// Error of an image relative to its reference, in the plan's error metric. The reference is the image of the
+// same technique with all rays, infinitely many samples per pixel and exact arithmetic. Light that the
+// technique does not follow is missing from the reference, too.
 struct Certificate {
   static constexpr double kConfidence = 0.95,
-                          kAlpha = 1 - kConfidence;  // confidence of estimates, over seeds
+                          kAlpha = 1 - kConfidence;  // confidence of estimated bounds, over all seeds
 
   static constexpr const char* kSamples = "samples";  // subject of the sampling error
 
@@ -26,25 +26,25 @@ struct Certificate {
   };
   std::vector<Term> terms;
   Space space = Space::linear;
-  // Smallest RMS that the samples of a picture of this size can prove, or nullopt if they can prove none.
+  // Smallest RMS that the samples of an image of this size can prove, or nullopt if they cannot prove any.
   std::optional<double> min_provable = {};
-  // RMSE estimated from the halves of the samples. It is noisy and not part of a sum.
+  // RMSE estimated from the two halves of the samples. It is noisy and not part of total().
   std::optional<double> estimate = {};
 
   // Intended bias of an option. `mean` is the exact mean difference per channel from the same render without
-  // the option. `standard_error` is that of `mean` as an estimate of the bias, and infinite for a single
-  // tile.
+  // the option. `standard_error` is the standard error of `mean` as an estimate of the bias; it is infinite
+  // for a single tile.
   struct Bias {
     std::string option;
     double value;
     std::array<double, 3> mean, standard_error;
   };
   std::vector<Bias> biases = {};
-  // Light that the reference lacks: Plan::not_followed. The reference has all other light.
+  // Kinds of light that the reference lacks: Plan::not_followed.
   std::vector<const char*> not_followed = {};
 
-  Bound total() const;  // kind of the weakest term
-  Bound known() const;  // terms with a known bound only
+  Bound total() const;  // sum of all terms, of the weakest kind
+  Bound known() const;  // sum of the terms with a known bound
   // Returns the sum of the terms for which keep(term) is true.
   template <class Keep>
   Bound total_of(const Keep& keep) const {
@@ -58,12 +58,12 @@ struct Certificate {
   }
 };
 
-// Returns the RMS that the halves of a picture of this size prove if they are equal. This is the smallest
-// error that samples can prove for the plan's technique. Returns nullopt if samples have no range.
+// Returns the RMS bound for an image of this size whose two halves are equal. This is the smallest bound that
+// samples can prove for the plan's technique. Returns nullopt if the range of a sample is unbounded.
 std::optional<double> min_provable(const Plan& plan, double doubt = Certificate::kAlpha);
 
-// Returns the certificate of a picture. `doubt` is the probability that an estimate is wrong. It must be less
-// than kAlpha if several certificates of one render are examined.
+// Returns the certificate of an image. `doubt` is the probability that an estimated bound is wrong. It must
+// be less than kAlpha if several certificates of one render are examined.
 Certificate certify(const Plan& plan, const RenderStats& stats, double doubt = Certificate::kAlpha);
 
 }  // namespace orrery

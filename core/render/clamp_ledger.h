@@ -8,11 +8,12 @@
 
 namespace orrery {
 
-// Ledger of Plan::clamp_indirect: radiance that the clamp removed from these samples. Its mean is exact for
-// the samples. The spread between tiles gives its standard error as an estimate of the expectation.
+// Ledger of Plan::clamp_indirect: radiance that the clamp removed from the samples. The mean is exact for
+// these samples. The variation between tiles gives the standard error of the mean as an estimate of its
+// expectation.
 struct ClampLedger {
   OmissionLedger pixels;            // all channels together
-  std::array<Sum, 3> sum, squares;  // per channel; a value is the sum of a tile
+  std::array<Sum, 3> sum, squares;  // per channel, of tile sums and of their squares
   double tiles = 0;
 
   double mean(std::size_t channel) const {
@@ -33,13 +34,13 @@ struct ClampLedger {
     }
     ++tiles;
   }
-  // Adds other pixels with the same samples.
+  // Adds other pixels with the same number of samples.
   void add(const ClampLedger& other) {
     pixels.add(other.pixels);
     add_sums(other);
   }
-  // Adds other samples of the same pixels. Their tiles count as more tiles, which rather overestimates the
-  // error.
+  // Adds other samples of the same pixels. Their tiles count as additional tiles, which tends to overestimate
+  // the standard error.
   void join(const ClampLedger& other) {
     pixels.join(other.pixels);
     add_sums(other);

@@ -13,10 +13,10 @@ struct FilmError {
   std::uint64_t non_finite_pixels = 0;
   OmissionLedger omitted;
   ClampLedger clamped;
-  Halves halves;       // relative to Plan::halves_range(); empty if samples have no range
-  SampledError error;  // even sample counts whose second half is one pass
+  Halves halves;       // relative to Plan::halves_range(); empty if that is infinite
+  SampledError error;  // known if the sample count is even and one pass traced its second half
 
-  // Adds other tiles.
+  // Adds the statistics of other tiles.
   void add(const FilmError& other) {
     non_finite_pixels += other.non_finite_pixels;
     omitted.add(other.omitted);
@@ -24,8 +24,7 @@ struct FilmError {
     halves.add(other.halves);
     error.add(other.error);
   }
-  // Adds the ledgers of the passes before the last one. The film's other statistics cover all samples
-  // already.
+  // Adds the ledgers of earlier passes. The other statistics already cover all samples.
   void join(const FilmError& before) {
     omitted.join(before.omitted);
     clamped.join(before.clamped);

@@ -8,8 +8,8 @@ namespace orrery {
 namespace {
 
 constexpr int kSamples = 4, kSteps = 4, kTiles = 16;
-constexpr double kColdMs = 50;            // CPU time below which cold caches matter
-constexpr double kLargestExponent = 1.5;  // mean squares of edges fall so
+constexpr double kColdMs = 50;            // CPU time below which cold caches distort the result
+constexpr double kLargestExponent = 1.5;  // for mean square errors at edges
 
 double rays_of(const Pilot& pilot) { return static_cast<double>(pilot.stats.counts.rays.total()); }
 
@@ -18,20 +18,20 @@ double mean_square(const RenderStats& stats) {
   return stats.halves.known() ? stats.halves.mean() : rmse * rmse;
 }
 
-// Traces the tiles, and once more if they took little time. The first tiles of a process are up to ten times
-// slower.
+// Traces the tiles, and repeats this if it took less than kColdMs. The first tiles of a process are up to ten
+// times slower.
 Pilot warm_tiles(const PreparedScene& scene, const SettledPlan& plan, int samples, WorkerPool& pool,
                  const RenderControl& control) {
   const Pilot first = trace_tiles(scene, plan, kTiles, samples, pool, control);
   if (first.stats.cpu_ms >= kColdMs) return first;
   Pilot second = trace_tiles(scene, plan, kTiles, samples, pool, control);
-  second.stats.build_ms = first.stats.build_ms;  // the second run finds the scene prepared
+  second.stats.build_ms = first.stats.build_ms;  // the scene was prepared in the first run
   return second;
 }
 
 }  // namespace
 
-// Blocks represent most of a picture, but neither reused paths nor time. Whole tiles represent both.
+// Blocks of pixels predict rays and errors, but neither path reuse nor time. Whole tiles predict both.
 ForecastPilots::ForecastPilots(const PreparedScene& scene, const SettledPlan& plan, WorkerPool& pool,
                                const RenderControl& control)
     : samples_(plan->samples == 1 ? 1 : kSamples),

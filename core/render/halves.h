@@ -7,30 +7,30 @@
 
 namespace orrery {
 
-// Differences between the two halves of the samples. The value of a pixel is the squared difference, divided
-// by the squared range of a sample and averaged over the channels; it is in [0, 1]. For displays, also
-// collects rounding errors of 8-bit codes, and the radiance by which one half alone exceeds the display's
-// range.
+// Statistics of the differences between the two halves of the samples. The value of a pixel is the squared
+// difference divided by the squared range of a sample, averaged over the channels, in [0, 1]. For displays,
+// also records rounding errors of 8-bit codes and the excess, the radiance above display white in only one
+// half.
 class Halves {
  public:
   void add(double value) { pixels_.add(value); }
-  // Adds the sum of the values of a tile.
+  // Adds the sum of the pixel values of a tile.
   void add_tile(double sum) {
     sum_ += sum;
     squares_ += sum * sum;
     ++tiles_;
   }
-  // Adds the excess of a pixel, which is `most` at most. `most` may be infinite.
+  // Adds the excess of a pixel, in [0, most]. `most` may be infinite.
   void add_beyond(double value, double most) {
     beyond_.add(value / most);
     if (value > 0) beyond_sum_ += value;
   }
-  // Adds the squared rounding errors of `codes` codes, relative to the range of codes.
+  // Adds the sum of the squared rounding errors of `codes` codes, each relative to the range of codes.
   void add_rounding(double squares, double codes) {
     rounding_squares_ += squares;
     codes_ += codes;
   }
-  void add(const Halves& other);  // adds other tiles
+  void add(const Halves& other);  // adds the statistics of other tiles
   // Returns the statistics scaled to `more_pixels` times as many pixels and tiles, and to squared differences
   // `squares` times as large.
   Halves scaled(double more_pixels, double squares) const;
@@ -38,12 +38,12 @@ class Halves {
   bool known() const { return pixels_.count() > 0; }
   double mean() const { return pixels_.mean(); }
   double rounding() const { return codes_ > 0 ? std::sqrt(rounding_squares_ / codes_) : 0; }  // RMS
-  // Returns an upper bound of the expected value, valid with probability 1 - doubt. Pixels are independent
-  // and may have any distribution, see UnitHistogram. If only tiles are independent, the bound is at least
-  // that of Student's t over tiles, or 1 for fewer than two tiles.
+  // Returns an upper bound of the expected value of a pixel, valid with probability 1 - doubt. The bound
+  // holds for independent pixels of any distribution, see UnitHistogram. If only tiles are independent, it is
+  // at least that of Student's t over tiles, or 1 for fewer than two tiles.
   double upper_mean(double doubt, bool tiles_alone_are_independent) const;
-  // Returns such a bound of the excess for independent pixels. If `most` is infinite, returns the mean excess
-  // found.
+  // Returns an upper bound of the expected excess for independent pixels, valid with probability 1 - doubt.
+  // If `most` is infinite, returns the mean excess.
   double upper_beyond(double doubt, double most) const;
 
  private:
@@ -57,7 +57,7 @@ class Halves {
 
 // Returns the t that a variable of Student's distribution with `degrees` degrees of freedom exceeds with
 // probability `tail` (Abramowitz and Stegun, "Handbook of mathematical functions", 26.7.3 and 26.7.4). Above
-// 200 degrees, returns the value for 200, which is 1 % above the limit. REQUIRES: degrees >= 1; tail in (0,
+// 200 degrees, returns the value for 200, which is about 1 % too large. REQUIRES: degrees >= 1; tail in (0,
 // 0.5).
 double student_quantile(double tail, int degrees);
 

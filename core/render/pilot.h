@@ -6,18 +6,18 @@ namespace orrery {
 
 struct Pilot {
   RenderStats stats;
-  double share;  // fraction of the picture's pixels
+  double share;  // traced fraction of the image's pixels
 };
 
-// Traces `samples` samples of one block of 4 x 4 pixels in each tile, 1/64 of the picture. A small picture
-// has several blocks per tile, 1024 pixels in all. Returns their statistics; the film is discarded. Depends
-// on scene and plan alone. Throws Cancelled once control.stop is requested. REQUIRES: one sample if the plan
-// has one.
+// Traces `samples` samples of one block of 4 x 4 pixels in each tile, 1/64 of the image. A small image has
+// several blocks per tile, at least 1024 pixels in all. Returns the statistics of these pixels and discards
+// the film. The result, except times, depends only on scene and plan. Throws Cancelled once control.stop is
+// requested. REQUIRES: one sample if the plan has one.
 Pilot trace_pilot(const PreparedScene& scene, const SettledPlan& plan, int samples, WorkerPool& pool,
                   const RenderControl& control);
 
-// Traces at most `most` whole tiles from all parts of the picture. Unlike blocks, they cost as much as other
-// tiles and reuse paths as the picture does. Otherwise as trace_pilot().
+// Traces at most `most` whole tiles from all parts of the image. Unlike blocks, they have the cost per pixel
+// and the path reuse of the image. Otherwise like trace_pilot().
 Pilot trace_tiles(const PreparedScene& scene, const SettledPlan& plan, int most, int samples,
                   WorkerPool& pool, const RenderControl& control);
 

@@ -8,19 +8,19 @@
 
 namespace orrery {
 
-// Result of a picture's budget.
+// Result of a render with a budget.
 struct BudgetOutcome {
   double error = 0, seconds = 0;  // requested; 0: no limit
   OnMiss on_miss = OnMiss::best;
-  RenderSettings settings;  // reproduce the picture without a budget
+  RenderSettings settings;  // reproduce the image without a budget
   bool error_met = true, seconds_met = true;
-  double used_s = 0;                     // at the end, by the client's clock
-  std::optional<double> min_error = {};  // smallest provable at this picture size
-  std::optional<double> min_s = {};      // predicted time of a first pass given up
-  std::string reason;                    // why it is missed, or empty
+  double used_s = 0;                     // at the end, see RenderControl::used_s
+  std::optional<double> min_error = {};  // smallest provable error at this image size
+  std::optional<double> min_s = {};      // predicted time of an abandoned first pass
+  std::string reason;                    // why the budget was missed; empty if it was met
 
   bool met() const { return error_met && seconds_met; }
-  // Sets the time used when all work is done. The budget may then be missed by work after rendering.
+  // Sets the time used up to the end of encoding. May turn a met time limit into a missed one.
   void end_at(double seconds_used);
 };
 
@@ -47,34 +47,34 @@ struct RenderResult {
   std::optional<BudgetOutcome> budget = {};
 };
 
-// Renders one frame on the pool. A plan with a budget gets as many samples as the budget takes and may throw
-// BudgetMissed, see render_within_budget(). Only FilmStorage::sums keeps the plan's channels. Throws
-// Cancelled once control.stop is requested.
+// Renders one frame on the pool. If the plan has a budget, the budget determines the samples, and
+// BudgetMissed may be thrown; see render_within_budget(). Only FilmStorage::sums stores the plan's channels.
+// Throws Cancelled once control.stop is requested.
 RenderResult render_frame(const PreparedScene& scene, const SettledPlan& plan, FilmStorage storage,
                           WorkerPool& pool, const RenderControl& control = {});
 
 // Returns the samples per pixel after each pass of a progressive render. The last pass has all samples of the
-// plan. Each pass before has half as many, rounded down, so that both halves of an even number estimate the
-// error. A pass of one sample is left out if single samples lie in the pixel's middle, as it is not part of a
-// larger set.
+// plan. Each earlier pass has half as many as the next, rounded down, so that the two halves of an even
+// number give an error estimate. A pass of one sample is omitted if a single sample is at the pixel centre,
+// as it is not part of a larger set.
 std::vector<int> progressive_samples(const Plan& plan);
 
-// One frame that is rendered in passes. After each pass, the film equals one whose samples were traced at
-// once. Scene and pool must outlive it.
+// One frame that is rendered in passes. After each pass, the film is identical to one whose samples were
+// traced in a single pass. Scene and pool must outlive it.
 class ProgressiveRender {
  public:
   // Prepares the scene and allocates the film. Throws Cancelled once `stop` is requested.
   ProgressiveRender(const PreparedScene& scene, const SettledPlan& plan, WorkerPool& pool,
                     std::stop_token stop);
 
-  // Traces the samples missing to `samples` per pixel. Throws Cancelled once control.stop is requested. After
-  // any exception the film is invalid. REQUIRES: more samples than before, at most the plan's.
+  // Traces samples until each pixel has `samples`. Throws Cancelled once control.stop is requested. After any
+  // exception the film is invalid. REQUIRES: more samples than before, at most the plan's.
   void refine(int samples, const RenderControl& control = {});
 
   const Film& film() const { return film_; }
   Film take_film() { return std::move(film_); }  // after the last pass
-  // Returns the statistics of all passes. The error is that of the film if the last pass at least doubled its
-  // samples.
+  // Returns the statistics of all passes. The error estimate is known only if the number of samples is even
+  // and the last pass at least doubled it.
   const RenderStats& stats() const { return stats_; }
 
  private:

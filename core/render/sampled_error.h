@@ -8,11 +8,11 @@
 
 namespace orrery {
 
-// Error estimate of a picture from the difference between two halves of its samples. Each half is a
+// Error estimate of an image from the difference between two halves of its samples. Each half is a
 // low-discrepancy net. For means a and b of the halves, the expectation of (a - b)^2 / 4 is the mean square
-// error of their mean if the halves are independent. Otherwise it is an overestimate: for edges, the RMSE is
-// 1.6 times too large at 2 samples and 1.2 times at 16. Sums are over values, three per pixel, for blocks of
-// several sizes that are averaged first.
+// error of their mean if the halves are independent. Otherwise it is an overestimate: at edges, the RMSE is
+// 1.6 times too large for 2 samples and 1.2 times for 16. Sums run over values, three per pixel. For 4 x 4
+// and 32 x 32 blocks, the differences of a block are averaged first.
 struct SampledError {
   struct MeanSquare {
     Sum squares = 0;
@@ -21,8 +21,8 @@ struct SampledError {
     double rmse() const { return values > 0 ? std::sqrt(squares / values) : 0; }
   };
   int samples = 0;                    // per pixel
-  MeanSquare pixel, block4, block32;  // only blocks that are wholly in the picture
-  // Moments of the tiles' mean squares. Tiles are independent, while pixels of a tile may not be.
+  MeanSquare pixel, block4, block32;  // only blocks entirely inside the image
+  // Moments of the tiles' mean squares. Tiles are independent, while pixels within a tile may not be.
   double tiles = 0;
   Sum tile_sum = 0, tile_squares = 0;
 
@@ -52,10 +52,11 @@ struct SampledError {
     return all;
   }
 
-  // Returns the number of tiles with equal errors whose mean squares would spread as much.
+  // Returns the effective number of tiles, (sum m)^2 / sum m^2 for the tiles' mean squares m. It equals the
+  // number of tiles if all m are equal.
   double tiles_that_err() const { return tile_squares > 0 ? tile_sum * tile_sum / tile_squares : tiles; }
 
-  // 95 % confidence interval of a pixel's RMSE, for normal errors.
+  // 95 % confidence interval of the RMSE over pixels, for normally distributed means over tiles.
   struct Interval {
     double low, high;
   };

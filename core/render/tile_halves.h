@@ -9,18 +9,18 @@
 
 namespace orrery {
 
-// Samples of one tile: sums by channel and slot of the first half, and of all. Values that are not finite are
-// left out, and are reported elsewhere. Results are bit-identical at each SIMD level. REQUIRES: an even
-// number of samples.
+// Sums of the samples of one tile by channel and pixel: of the first half, and of all. Non-finite values are
+// skipped; FilmError::non_finite_pixels counts them. Results are bit-identical at each SIMD level. REQUIRES:
+// an even number of samples.
 struct TileHalves {
   const TileView& tile;
   const std::array<TileSums::Plane, 3>&first, &all;
   int samples;  // in `all`
 
   SampledError error() const;
-  // Adds the differences of radiance, relative to the range of a sample.
+  // Adds the differences in radiance, relative to the range of a sample.
   void add_to(Halves& halves, const Plan& plan) const;
-  // Adds the differences of displayed values.
+  // Adds the differences in display values (sRGB-encoded, 0 to 1).
   void add_displayed_to(Halves& halves, const Plan& plan) const;
 };
 

@@ -11,7 +11,7 @@
 namespace orrery {
 namespace {
 
-// Adds a sample to the sums. The first sample sets them.
+// Adds a sample to the sums. The first sample overwrites them.
 template <class T>
 void add(bool first, const Array<T>& value, TileSums::Plane& sum) {
   if (first)
@@ -27,7 +27,7 @@ void add_vector(bool first, const Vec3Array<T>& value, Planes& sums) {
   add(first, value.z, sums[2]);
 }
 
-// Adds the values of slots that hit something. `value` is undefined in the other slots.
+// Adds the values of pixels whose ray hit something. `value` is undefined for other pixels.
 template <class T>
 void add_weighted(bool first, const Array<T>& value, const Array<T>& weight, TileSums::Plane& sum) {
   if (first) sum.fill(0.0);
@@ -35,8 +35,8 @@ void add_weighted(bool first, const Array<T>& value, const Array<T>& weight, Til
     if (weight.values[i] > 0) sum[i] += static_cast<double>(value.values[i]);
 }
 
-// Returns the ledger of sums by channel and slot; all 0 without channels. Filters with negative lobes may
-// give negative sums.
+// Returns the ledger of sums by channel and pixel; all 0 if `channels` is empty. Filters with negative lobes
+// may give negative sums.
 OmissionLedger ledger_of(const TileView& tile, std::span<const TileSums::Plane> channels) {
   double sum = 0, squares = 0, largest = 0;
   for (const TileSums::Plane& channel : channels)
@@ -149,9 +149,9 @@ void TileRenderer<T>::put_single(const TileView& tile, Film& film) {
   stats_.non_finite_pixels += film.put(tile, means_);
 }
 
-// Chooses the number of emission samples. It is kMaxEmissionSamples with lens or motion blur, or if two
-// opposite corners of the pixels, or of the filter's support, see different emission. Otherwise it is one.
-// The choice is not random, so the number is independent of the samples.
+// Chooses the number of emission samples: kMaxEmissionSamples with lens or motion blur, or if emission varies
+// within the tile, else one. The variation is tested at two opposite corners of each pixel, or of the
+// filter's support. The choice is not random, so the number is independent of the samples.
 template <class T>
 void TileRenderer<T>::begin_emission_rays(const TileView& tile) {
   emission_rays_ = 0;

@@ -20,13 +20,13 @@ class TileRenderer {
   // Adds the tile's samples to the film. Returns false if cancelled; the film's tile is then unchanged.
   bool render(const TileView& tile, const Checkpoint& checkpoint, Film& film);
 
-  // Adds the statistics of all tiles so far.
+  // Adds the statistics of all rendered tiles to `stats`.
   void add_to(RenderStats& stats) const;
 
  private:
   // Traces one sample of every pixel. Returns false if cancelled.
   bool trace(const TileView& tile, int sample, const Checkpoint& checkpoint);
-  // Traces one sample of a part of the pixel filter.
+  // Traces one sample of every pixel for one part of the pixel filter.
   bool trace_part(const TileView& tile, int sample, PixelFilter::Part part, TraceResult<T>& into,
                   const Checkpoint& checkpoint);
   // Subtracts the negative part of the filter from the positive one.
@@ -43,25 +43,24 @@ class TileRenderer {
   void add_clamped(const TileView& tile);
   void add_error(const TileHalves& halves);
   void put_single(const TileView& tile, Film& film);
-  // Replaces the radiance by the colours of its error bound.
+  // Replaces the radiance of each pixel by the colour of its error bound.
   void show_bound(const TileView& tile);
 
   const Plan& plan_;
-  const bool places_samples_;  // false: samples lie at the pixels' centres
+  const bool places_samples_;  // false: samples are at the pixel centres
   TracerPtr<T> tracer_;
-  // Random streams by slot: for the samples' positions in this tile's pixels, and for those of emission
-  // samples.
+  // Random streams by pixel of this tile, for the positions of samples and of emission samples.
   Array<std::uint32_t> pixel_streams_, emission_ray_streams_;
   TileSamples samples_ = TileSamples::centres(), look_samples_ = TileSamples::centres();
   int emission_rays_ = 0;  // emission samples per sample in this tile
   RayBatch<T> rays_;
   TraceResult<T> result_;
-  std::optional<PixelFilter> filter_;              // unset: samples cover their pixels evenly
-  std::unique_ptr<TraceResult<T>> negative_lobe_;  // its negative lobes; null if it has none
+  std::optional<PixelFilter> filter_;              // nullopt: samples are uniform over the pixel
+  std::unique_ptr<TraceResult<T>> negative_lobe_;  // result for the filter's negative lobes; null if none
   TileSums sums_;
   std::array<TileSums::Plane, 3> first_half_;  // radiance of the first half of the samples
   TileMeans means_;
-  // Ledger of this tile, sums by channel and slot. Empty while nothing was left out.
+  // Light of untraced rays in this tile, summed by channel and pixel. Empty if all rays were traced.
   std::vector<TileSums::Plane> omitted_;
   std::array<TileSums::Plane, 3> clamped_;  // set if Plan::clamp_indirect is above 0
   RenderStats stats_;

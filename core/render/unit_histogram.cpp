@@ -13,8 +13,8 @@ void UnitHistogram::add_positive(double value) {
   add_times(std::bit_cast<double>((bits + kRoundedOff) & ~kRoundedOff), 1);
 }
 
-// Computes the bin from the exponent and the two highest bits of the fraction. Bins are quarters of an
-// octave, linear within it.
+// Computes the bin from the exponent and the two highest bits of the fraction. The four bins of an octave
+// have equal widths.
 void UnitHistogram::add_times(double value, double times) {
   constexpr int kBitsBelow = 50;
   constexpr std::uint64_t kFirst = std::uint64_t{1023 - kOctaves} << 2;
@@ -57,9 +57,9 @@ double UnitHistogram::low_of(std::size_t bin) {
   return std::ldexp(1 + (part % kPartsOfOctave) / double{kPartsOfOctave}, part / kPartsOfOctave - kOctaves);
 }
 
-// Computes the mean over bets of the product over values of 1 + bet (mean - value). A bet is a share of the
-// largest that cannot ruin the gambler. Half of the wealth is on the largest bet, which wins most if all
-// values are 0. Logarithms are concave, so within a bin the chord is a lower bound.
+// Computes the mean over bets of the product over values of 1 + bet (mean - value). A bet is a fraction of
+// the largest that cannot ruin the gambler. Half of the wealth is on the largest bet, which wins most if all
+// values are 0. Logarithms are concave, so the chord is a lower bound within a bin.
 bool UnitHistogram::rejects(double mean, double log_odds) const {
   constexpr int kBets = 24;
   std::array<double, kBets> wealth;
@@ -93,7 +93,7 @@ double UnitHistogram::upper_mean(double delta) const {
   const double values = count();
   if (values == 0) return 1;
   const double log_odds = -std::log(delta);
-  double kept = std::max(mean(), 1e-18), rejected = 1;  // bisects logarithms: means may be tiny
+  double kept = std::max(mean(), 1e-18), rejected = 1;  // bisected on a log scale
   if (!rejects(1 - 1e-12, log_odds)) return 1;
   while (rejected / kept > 1.001) {
     const double middle = std::sqrt(kept * rejected);

@@ -5,11 +5,11 @@
 
 namespace orrery {
 
-// Histogram of values in [0, 1]: count and sum per bin. A bin is a quarter of a power of two.
+// Histogram of values in [0, 1]: count and sum per bin. There are four bins per power of two.
 class UnitHistogram {
  public:
-  // Adds a value, clamped to [0, 1]. Positive values are rounded up to 29 bits and to at least 2^-64. Sums of
-  // up to 2^24 values in a bin are then exact and independent of their order.
+  // Adds a value, clamped to [0, 1]. Positive values are rounded up to 29 significant bits and to at least
+  // 2^-64. Sums of up to 2^24 values in a bin are then exact and independent of their order.
   void add(double value) {
     if (value <= 0)
       bins_[0].count += 1;
@@ -17,23 +17,24 @@ class UnitHistogram {
       add_positive(value);
   }
   void add(const UnitHistogram& other);
-  // Returns about `counts` times as many values, each `values` times as large. The mean of each bin is moved.
+  // Returns a histogram of about `counts` times as many values, each `values` times as large. All values of a
+  // bin are replaced by their mean.
   UnitHistogram scaled(double counts, double values) const;
   double count() const;
-  double mean() const;  // 0 without values
+  double mean() const;  // 0 if empty
 
   // Returns an upper bound of the expected value, valid with probability 1 - delta for independent values of
   // any distribution (Waudby-Smith and Ramdas, "Estimating means of bounded random variables by betting",
-  // JRSS B 2024). A gambler bets with a mixture of fixed shares that the mean is lower. The gambler's wealth
-  // grows by a factor of 1/delta with probability delta at most. Only the sum of a bin is known, so the
-  // lowest wealth for that sum counts. Returns 1 without values.
+  // JRSS B 2024). A gambler bets on a lower mean, with a mixture of fixed fractions of the wealth. If the
+  // mean is not lower, the wealth grows by a factor of 1/delta with probability at most delta. Only the sum
+  // of a bin is known, so the lowest wealth for that sum counts. Returns 1 if empty.
   double upper_mean(double delta) const;
-  // Returns the smallest possible upper_mean() of `count` values, i.e. that of zeros.
+  // Returns the smallest possible upper_mean() of `count` values, that of zeros.
   static double min_upper_mean(double count, double delta);
 
  private:
   static constexpr int kOctaves = 64, kPartsOfOctave = 4;
-  static constexpr std::size_t kBins = kOctaves * kPartsOfOctave + 1;  // the first has all smaller values
+  static constexpr std::size_t kBins = kOctaves * kPartsOfOctave + 1;  // bin 0: all smaller values
   struct Bin {
     double count = 0, sum = 0;
   };

@@ -6,7 +6,7 @@
 namespace orrery {
 namespace {
 
-// Calls use(image) with the film's radiance in that format. Converts only if the film has another format.
+// Calls use(image) with the film's radiance in `format`. Converts only if the film has another format.
 template <class Use>
 std::string with_image(const Film& film, PixelFormat format, const Use& use) {
   const bool kept = film.storage() != FilmStorage::sums && film.stored().format() == format;

@@ -21,26 +21,26 @@ namespace orrery {
 
 namespace {
 
-// Length of a turn while others wait, and the time after which a step or task that has not yielded loses its
-// slot.
+// Length of a time slice while other work waits, and the time after which a step or task that has not yielded
+// loses its place.
 constexpr std::chrono::milliseconds kSlice{20}, kOverdue{50};
 
 // Threads that share their time evenly between several loops.
 //
-// At most `count` steps and tasks hold a slot at a time. A step that yields keeps its thread, which blocks,
-// and another step takes its slot. So there are at most `count` more threads for each loop. A step that does
-// not yield in time continues without a slot. The system then shares the cores between that step and the
-// holder of its slot.
+// A place is the right to run a step or task. There are `count` places. A step that yields gives its place to
+// another step and blocks its thread. So there are at most `count` more threads for each loop. A step that
+// does not yield in time loses its place but continues to run. The system then shares the cores between that
+// step and the new owner of the place.
 //
-// The threads are not those of a TBB task arena. There, a caller that waits for its last tile may be given
-// another caller's whole frame first. A small picture would then wait for a large one.
+// The threads are not those of a TBB task arena. There, a caller that waits for its last tile may be assigned
+// another caller's whole frame first. A small image would then wait for a large one.
 class WorkerThreads {
  public:
   WorkerThreads(int count, int niceness) : count_(count), niceness_(niceness), idle_(count) {
     try {
       for (int i = 0; i < count; ++i) threads_.emplace_back([this] { serve(); });
       watch_ = std::thread([this] { watch(); });
-    } catch (...) {  // the system has no more threads
+    } catch (...) {  // the system cannot start more threads
       end();
       throw;
     }
@@ -92,9 +92,9 @@ class WorkerThreads {
     SlotLease* const lease;
     const TaskContext scope = TaskScope::current();  // the caller's
     std::vector<int> free_workers;
-    int next = 0, running = 0;          // next step to start; steps started and not done
+    int next = 0, running = 0;          // next step to start; unfinished steps
     std::list<StepSlice*> paused = {};  // running steps that have yielded
-    Clock::duration used{};             // time used; starts at the minimum of the other loops
+    Clock::duration used{};             // time used by steps; starts at the minimum of the loops
     std::exception_ptr error = {};
     bool lease_expired = false;
     std::condition_variable changed = {};
@@ -109,13 +109,13 @@ class WorkerThreads {
     }
   };
 
-  // Slot of a thread that runs a step or a task, on the stack of that thread.
+  // Place of a running step or task, on the stack of its thread.
   struct Place {
-    const Loop* loop;  // null: a task
+    const Loop* loop;  // null for a task
     Clock::time_point since = Clock::now();
   };
 
-  // Turn of a step, on the stack of its thread.
+  // Time slice of a step, on the stack of its thread.
   class StepSlice final : public TimeSlice {
    public:
     StepSlice(WorkerThreads& threads, Loop& loop, Place& place)
@@ -123,7 +123,7 @@ class WorkerThreads {
     void yield() override {
       if (Clock::now() - place_.since >= kSlice) threads_.yield(*this);
     }
-    // Adds the time since the last call to that of the loop. REQUIRES: mutex_ is held.
+    // Adds the time since the last call to the time used by the loop. REQUIRES: mutex_ is held.
     void charge() {
       const auto now = Clock::now();
       loop_.used += now - std::exchange(place_.since, now);
@@ -138,9 +138,9 @@ class WorkerThreads {
     std::condition_variable changed_;
   };
 
-  // Functions below require that mutex_ is held, unless they lock it themselves.
+  // The functions below require that mutex_ is held, unless they lock it themselves.
 
-  // Starts a loop, with an equal share of the time from now on.
+  // Adds a loop. It gets no credit for the time before, so the threads are shared evenly from now on.
   void add(Loop& loop) {
     const auto least = std::min_element(loops_.begin(), loops_.end(),
                                         [](const Loop* a, const Loop* b) { return a->used < b->used; });
@@ -173,7 +173,8 @@ class WorkerThreads {
     return std::find(places_.begin(), places_.end(), &place) != places_.end();
   }
 
-  // Returns the loop with work that has used the least time, or nullptr.
+  // Returns the loop that has used the least time among those with waiting steps, or nullptr if no step
+  // waits.
   Loop* next_loop() {
     Loop* best = nullptr;
     for (Loop* loop : loops_)
@@ -202,7 +203,8 @@ class WorkerThreads {
     return !tasks_.empty() ||
            std::any_of(loops_.begin(), loops_.end(), [&](const Loop* l) { return l != loop && l->waits(); });
   }
-  // Returns whether a task or another loop has precedence over this loop.
+  // Returns whether a step of this loop must give up its place: the lease expired, a task waits, or a loop
+  // that has used no more time has waiting steps.
   bool is_over(const Loop& loop) {
     if (loop.lease_expired || !tasks_.empty()) return true;
     const Loop* const other = next_loop();
@@ -247,8 +249,8 @@ class WorkerThreads {
     if (may_begin()) changed_.notify_all();
   }
 
-  // Returns whether there are idle threads for all free slots and one more. Starts a thread if needed, and
-  // returns false if the system has none.
+  // Returns whether there are idle threads for all free places and one more. Starts a thread if needed.
+  // Returns false if the system cannot start one.
   bool thread_for_another() {
     if (idle_ > count_ - static_cast<int>(places_.size())) return true;
     try {
@@ -315,7 +317,7 @@ class WorkerThreads {
   std::condition_variable changed_;
   std::deque<std::function<void()>> tasks_;
   std::list<Loop*> loops_;    // in progress
-  std::list<Place*> places_;  // taken slots
+  std::list<Place*> places_;  // places in use
   int idle_;                  // threads without a step or task
   bool ends_ = false;
   std::vector<std::thread> threads_;
@@ -325,14 +327,14 @@ class WorkerThreads {
 
 }  // namespace
 
-// The system's scheduler moves cores from background to foreground threads whenever those have work, however
-// long tiles are.
+// Background threads have a higher nice value. The system scheduler therefore gives the cores to foreground
+// threads whenever these have steps to run, even within a long tile.
 struct WorkerPool::Parts {
   explicit Parts(int count)
       : builders(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count)),
         foreground(count, 0),
         background(count, 10) {}
-  tbb::global_control builders;  // accelerator builds use at most as many threads
+  tbb::global_control builders;  // limits the threads of accelerator builds
   WorkerThreads foreground, background;
 };
 

@@ -7,12 +7,14 @@
 
 namespace orrery {
 
-// Lease of a loop on its share of the threads, if other loops wait for a lease, too.
+// Lease of an admission slot, which permits a loop to run steps. The lease expires if other work needs the
+// slot.
 class SlotLease {
  public:
-  // Returns whether another loop holds the lease. Thread-safe. Must be short, since locks are held.
+  // Returns whether the loop has lost the slot. Thread-safe. Must be fast, since it is called with locks
+  // held.
   virtual bool expired() const = 0;
-  // Blocks until the loop holds the lease again. An exception ends the loop.
+  // Blocks until the loop has a slot again. An exception ends the loop.
   virtual void renew() = 0;
 
  protected:
@@ -28,15 +30,16 @@ class WorkerPool {
   WorkerPool(const WorkerPool&) = delete;
   int threads() const;
 
-  // Runs `task` soon on one of the threads. The task must be short, must not throw and must not block.
+  // Runs `task` on one of the threads, before steps that have not started. The task must be short, must not
+  // throw and must not block.
   void enqueue(bool background, std::function<void()> task);
-  // Calls work(step, worker, turn) for each 0 <= step < count on the threads, and returns after the last.
-  // Steps that run at once have different workers, 0 <= worker < threads(). Callers share the threads evenly.
-  // A long step must call Turn::yield() now and then to yield to callers that had less time. A step that
-  // does not yield for 50 ms shares its core with them. Background callers get the time that others leave.
-  // Once a step returns false or throws, no more steps start; the first exception is rethrown here. If
-  // `lease` is given and has expired, no step starts and running steps pause when they yield. The caller's
-  // thread then renews it.
+  // Calls work(step, worker, turn) for each 0 <= step < count on the threads, and returns after the last
+  // call. Concurrent steps have different workers, 0 <= worker < threads(). Callers share the threads evenly.
+  // A long step must call turn.yield() every few milliseconds to yield to callers that have used less time. A
+  // step that does not yield for 50 ms shares its core with them. Background callers run at lower priority.
+  // Once a step returns false or throws, no more steps start. The first exception is rethrown here. If
+  // `lease` is not null and has expired, no step starts and running steps pause when they yield. The caller's
+  // thread then renews the lease.
   using Step = std::function<bool(int step, int worker, TimeSlice& turn)>;
   void for_each(int count, bool background, const Step& work, SlotLease* lease = nullptr);
 

@@ -23,8 +23,9 @@ struct Box {
     return {Patch::Kind::box, lo + half, {half.x, 0, 0}, {0, half.y, 0}, {0, 0, half.z}};
   }
 
-  // Returns the distance of the entry into all three slabs, or of the exit if the origin is inside. A ray in
-  // the plane of a face gives NaN for it (0 * infinity), which the other slabs override.
+  // Returns the distance to the point where the ray enters the box, or leaves it if the origin is inside.
+  // Returns infinity for a miss. In the plane of a face, a slab gives 0 / 0; min_first and max_first ignore
+  // this NaN.
   N distance(const Ray<N>& ray) const {
     using T = ScalarOf<N>;
     using std::signbit;
@@ -44,7 +45,8 @@ struct Box {
     return select(enter <= leave && t > N(T(0)) && whole == whole, t, infinity);
   }
 
-  // Computes the surface of the nearest face, measured in half edges.
+  // Returns the surface of the face nearest to the ray's point at `t`. Distances are relative to the box's
+  // size along each axis.
   Surface<N> surface(const Ray<N>& ray, const N& t) const {
     using T = ScalarOf<N>;
     const N zero(T(0)), one(T(1));
@@ -68,8 +70,7 @@ struct Box {
     return {position, normal, normal, magnitude};
   }
 
-  // Returns parameters from 0 to 1 on each face: (x, y) if it faces z, (x, z) if it faces y, (z, y) if it
-  // faces x.
+  // Returns u and v in [0, 1] on each face: (x, y) on faces perpendicular to z, (x, z) to y, and (z, y) to x.
   SurfacePoint<N> parameters(const Ray<N>&, const Vec3<N>& position) const {
     using T = ScalarOf<N>;
     const N zero(T(0)), one(T(1));

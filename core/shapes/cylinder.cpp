@@ -16,8 +16,8 @@ void Cylinder<N>::read(Params& p, std::vector<Cylinder<double>>& out) {
     const double reach = std::max(max_component(abs(base)), max_component(abs(top))) + radius;
     out.push_back({(base + top) * 0.5, safe_normalize(top - base), radius, length(top - base) / 2, reach});
   } else {
-    const Vec3d point = p.point("point", "Any point of the axis, in metres.");
-    const Vec3d axis = p.direction("axis", "Direction of the axis; the cylinder is infinite.");
+    const Vec3d point = p.point("point", "Any point on the axis, in metres.");
+    const Vec3d axis = p.direction("axis", "Direction of the axis of an infinite cylinder.");
     const double radius = p.positive("radius", "Radius, in metres.");
     out.push_back({point, axis, radius, infinity, max_component(abs(point)) + radius});
   }

@@ -15,7 +15,7 @@ struct Cylinder {
   Vec3<N> center, axis;  // the axis is a unit vector
   N radius;
   N half_length;  // infinite for an infinite cylinder
-  N magnitude;    // upper bound of the absolute coordinates; at `center` if infinite
+  N magnitude;    // upper bound of the absolute coordinates; within `radius` of `center` if infinite
 
   static constexpr ShapeTraits kTraits = {.convex = true, .closed = true};
 
@@ -39,9 +39,10 @@ struct Cylinder {
     return round_hull(Vec3d(center), Vec3d(axis), double(radius), double(half_length));
   }
 
-  // Returns the distance of the entry into the intersection of an infinite cylinder and a slab, or of the
-  // exit if the origin is inside. The wall's roots are computed from the residue as for the sphere, in the
-  // plane across the axis.
+  // Returns the distance to the point where the ray enters the cylinder, or leaves it if the origin is
+  // inside. Returns infinity for a miss. The cylinder is the intersection of an infinite cylinder and the
+  // slab between the caps. As in Ball::distance(), the roots of the wall come from the perpendicular residue,
+  // here in the plane across the axis.
   N distance(const Ray<N>& ray) const {
     using T = ScalarOf<N>;
     using std::signbit;
@@ -70,7 +71,7 @@ struct Cylinder {
     return select(meets && enter <= leave && t > zero && t < infinity, t, infinity);
   }
 
-  // Computes the surface of the wall or the cap, whichever is nearer.
+  // Returns the surface of the wall or of a cap, whichever is nearer to the ray's point at `t`.
   Surface<N> surface(const Ray<N>& ray, const N& t) const {
     using T = ScalarOf<N>;
     using std::abs;
@@ -90,8 +91,9 @@ struct Cylinder {
     return {position, normal, normal, max(magnitude, max_component(orrery::abs(position)))};
   }
 
-  // Returns u: turns around the axis, anticlockwise seen from its tip. v on the wall: 0 at the base, 1 at the
-  // top, or metres from `point` without caps. v on a cap: 0 at the centre, 1 at the edge.
+  // u is the angle around the axis in turns, in [0, 1], anticlockwise as seen from its tip. v on the
+  // wall is 0 at the base and 1 at the top. On an infinite cylinder, v is the distance along the axis from
+  // `point`, in metres. v on a cap is 0 at the centre and 1 at the edge.
   SurfacePoint<N> parameters(const Ray<N>&, const Vec3<N>& position) const {
     using T = ScalarOf<N>;
     using std::abs;

@@ -7,7 +7,6 @@
 
 namespace orrery {
 
-// Flat disk.
 template <class N>
 struct Disk {
   Vec3<N> center, normal;
@@ -42,7 +41,8 @@ struct Disk {
     return {near - normal * dot(near - center, normal), normal, normal, magnitude};
   }
 
-  // Returns u: turns around the normal, anticlockwise seen from its tip. v: 0 at the centre, 1 at the edge.
+  // u is the angle around the normal in turns, in [0, 1], anticlockwise as seen from the front. v is 0 at the
+  // centre and 1 at the edge.
   SurfacePoint<N> parameters(const Ray<N>&, const Vec3<N>& position) const {
     using T = ScalarOf<N>;
     const Tangents<N> axes = tangents_of(normal);

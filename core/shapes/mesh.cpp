@@ -83,14 +83,16 @@ class MeshSet final : public ShapeSet {
   }
 
  private:
-  static constexpr std::uint64_t kMaxPairs = std::uint64_t{1} << 30;
-  static constexpr std::uint64_t kMaxPairGrowth = 16;  // factor over the pairs that coincide at all keys
+  static constexpr std::uint64_t kMaxPairs = std::uint64_t{1} << 30;  // per scene
+  // Limit of MovingMesh::max_pairs, as a multiple of the pairs around vertices that coincide at all keys.
+  static constexpr std::uint64_t kMaxPairGrowth = 16;
 
   std::size_t part_number(std::size_t triangle) const {
     return static_cast<std::size_t>(&table_.part_of(triangle) - table_.parts.data());
   }
 
-  // Returns false after a problem, which `p` records.
+  // Prepares a static mesh: removes degenerate triangles and unused vertices, and smooths the normals.
+  // Returns false and records a problem in `p` if smoothing exceeds kMaxPairs.
   bool take_resting(MeshObject& object, Params& p, MeshSource& source) {
     left_out_ += drop_degenerate(object.mesh);
     drop_unused(object.mesh);
@@ -100,6 +102,8 @@ class MeshSet final : public ShapeSet {
     smooth_normals(object.mesh, *object.crease_degrees, places);
     return true;
   }
+  // Stores the motion of a mesh. Returns false and records a problem in `p` if smoothing may exceed
+  // kMaxPairs.
   bool take_moving(MeshObject& object, Params& p, MeshSource& source) {
     MovingMesh moving{
         object.mesh.triangles, object.mesh.uvs, std::move(object.keys), object.crease_degrees, {}, 0};
@@ -113,14 +117,14 @@ class MeshSet final : public ShapeSet {
     return true;
   }
 
-  // Adds to the number of triangle pairs that smoothing compares. Returns false and records a problem if the
-  // limit is exceeded.
+  // Adds `pairs` to the number of triangle pairs that smoothing compares in this scene. Returns false and
+  // records a problem in `p` if it exceeds kMaxPairs.
   static bool may_compare(std::uint64_t pairs, Params& p, MeshSource& source) {
     source.pairs += pairs;
     if (source.pairs <= kMaxPairs) return true;
     p.fail("crease_degrees", "smoothing compares " + grouped(source.pairs) +
-                                 " pairs of triangles around vertices (limit " + grouped(kMaxPairs) +
-                                 ", smoothing pairs)");
+                                 " pairs of triangles that share a vertex (limit " + grouped(kMaxPairs) +
+                                 " pairs per scene)");
     return false;
   }
 
@@ -149,7 +153,7 @@ class MeshSet final : public ShapeSet {
 
   void append(const TriangleMesh& mesh) {
     if (mesh.triangles.empty()) return;
-    Boundsd box;  // bounds of the vertices in use
+    Boundsd box;  // bounds of the vertices that triangles use
     const auto first_vertex = static_cast<std::uint32_t>(table_.positions.size());
     const std::size_t first = table_.triangles.size();
     for (const auto& [a, b, c] : mesh.triangles) {
@@ -168,7 +172,7 @@ class MeshSet final : public ShapeSet {
     return std::make_shared<PrimitiveKernel<MeshTriangle, T, MeshRecords<T>>>(MeshRecords<T>(table_), first);
   }
 
-  MeshTable<double> table_;                   // without motion; moving parts are not smoothed
+  MeshTable<double> table_;                   // static positions; moving parts have no smoothed normals
   std::map<std::size_t, MovingMesh> moving_;  // by part
   std::size_t left_out_ = 0;
 };
@@ -178,7 +182,7 @@ std::unique_ptr<ShapeSet> make_mesh_set() { return std::make_unique<MeshSet>(); 
 }  // namespace
 
 ShapeType mesh_type() {
-  return {"mesh", "Triangles over shared vertices, watertight along shared edges.", make_mesh_set};
+  return {"mesh", "A triangle mesh with shared vertices, watertight along shared edges.", make_mesh_set};
 }
 
 }  // namespace orrery

@@ -14,39 +14,42 @@ std::string entries_text(std::size_t count, const char* why, std::size_t got) {
          ")";
 }
 
-// Returns a consistent mesh, even after recorded problems.
+// Returns a mesh with valid indices, and with one normal and one uv per vertex or none, even after recorded
+// problems.
 TriangleMesh read_inline(Params& p) {
   TriangleMesh mesh;
   mesh.positions = p.points("positions", "Vertices, in metres.", {3, kLimits.vertices});
   const auto bound = static_cast<std::int64_t>(mesh.positions.size());
-  const auto triples = p.index_triples("indices", "Vertices of each triangle, anticlockwise from the front.",
-                                       {1, kLimits.triangles}, bound);
-  mesh.normals = p.directions("normals", "Shading normal of each vertex; default: flat triangles.",
-                              {0, kLimits.vertices});
+  const auto triples =
+      p.index_triples("indices", "Vertices of each triangle, anticlockwise as seen from the front.",
+                      {1, kLimits.triangles}, bound);
+  mesh.normals =
+      p.directions("normals", "Shading normal of each vertex; default: flat shading.", {0, kLimits.vertices});
   if (!mesh.normals.empty() && mesh.normals.size() != mesh.positions.size()) {
     p.fail("normals", entries_text(mesh.positions.size(), "one per position", mesh.normals.size()));
     mesh.normals.clear();
   }
   mesh.uvs =
-      p.pairs("uvs", "Texture coordinates (u, v) of each vertex; (0, 0) is the lower left of an image.",
+      p.pairs("uvs", "Texture coordinates (u, v) of each vertex; (0, 0) is the lower left of the image.",
               {0, kLimits.vertices});
   if (!mesh.uvs.empty() && mesh.uvs.size() != mesh.positions.size()) {
     p.fail("uvs", entries_text(mesh.positions.size(), "one per position", mesh.uvs.size()));
     mesh.uvs.clear();
   }
   for (const auto& triple : triples) {
-    if (std::max({triple[0], triple[1], triple[2]}) >= bound) return {};  // reported already
+    if (std::max({triple[0], triple[1], triple[2]}) >= bound) return {};  // reported by index_triples()
     mesh.triangles.push_back({static_cast<std::uint32_t>(triple[0]), static_cast<std::uint32_t>(triple[1]),
                               static_cast<std::uint32_t>(triple[2])});
   }
   return mesh;
 }
 
-// Returns the result of `read`; reports its errors at `key`.
+// Returns read(name). Records a problem at `key` and returns an empty mesh if `name` is empty, `read` throws
+// InputError, or a coordinate exceeds kMaxCoordinate.
 template <class Read>
 TriangleMesh read_elsewhere(Params& p, const char* key, const std::string& name, const Read& read) {
   if (name.empty()) {
-    p.fail(key, "must be a name (got \"\")");
+    p.fail(key, "must not be empty");
     return {};
   }
   try {
@@ -90,10 +93,11 @@ MeshObject MeshReader::read(Params& p) {
     case 1: mesh = read_file(p, source_.assets, file_name(p)); break;
     default: mesh = read_asset(p, source_.assets, asset_name(p));
   }
-  const double crease = p.number("crease_degrees",
-                                 "Smooth shading across edges whose faces meet at less than this angle; "
-                                 "default: the normals of the mesh.",
-                                 {.min = 0, .max = 180}, derived(0.0));
+  const double crease =
+      p.number("crease_degrees",
+               "Smooth shading between faces whose normals differ by less than this angle, in degrees; "
+               "default: the normals of the mesh.",
+               {.min = 0, .max = 180}, derived(0.0));
   if (p.has("crease_degrees")) object.crease_degrees = crease;
   if (!fits(mesh.positions.size(), mesh.triangles.size(), p)) mesh = {};
   const VertexKey at_rest =
@@ -103,10 +107,10 @@ MeshObject MeshReader::read(Params& p) {
   return object;
 }
 
-// Reads the vertices of the mesh at one time.
+// Reads one keyframe. Returns the vectors of `at_rest` for positions or normals that the keyframe omits.
 VertexKey MeshReader::read_key(Params& p, const TriangleMesh& rest, const VertexKey& at_rest) {
   std::vector<Vec3d> positions =
-      p.points("positions", "Vertices in metres, as many as in the mesh.", {0, kLimits.vertices});
+      p.points("positions", "Vertices, in metres; the same number as in the mesh.", {0, kLimits.vertices});
   std::vector<Vec3d> normals = p.directions(
       "normals", "Shading normal of each vertex, if the mesh has normals.", {0, kLimits.vertices});
   const std::string file = file_name(p, ""), asset = asset_name(p, "");
@@ -117,9 +121,9 @@ VertexKey MeshReader::read_key(Params& p, const TriangleMesh& rest, const Vertex
     TriangleMesh mesh =
         p.has("file") ? read_file(p, source_.assets, file) : read_asset(p, source_.assets, asset);
     if (mesh.triangles != rest.triangles)
-      p.fail("", "must have the " + std::to_string(rest.triangles.size()) +
-                     " triangles of the mesh without motion, with the same vertices (got " +
-                     std::to_string(mesh.triangles.size()) + ")");
+      p.fail("", "must have the same " + std::to_string(rest.triangles.size()) +
+                     " triangles with the same vertex indices as the mesh without motion (got " +
+                     std::to_string(mesh.triangles.size()) + " triangles)");
     positions = std::move(mesh.positions);
     if (!rest.normals.empty() && normals.empty()) normals = std::move(mesh.normals);
   }
@@ -140,7 +144,7 @@ bool MeshReader::fits(std::size_t vertices, std::size_t triangles, Params& p) {
   source_.triangles += triangles;
   source_.full = source_.vertices > kLimits.vertices || source_.triangles > kLimits.triangles;
   if (source_.full)
-    p.fail("", "meshes of the scene and their keys have at least " + grouped(source_.vertices) +
+    p.fail("", "meshes of the scene and their keyframes have at least " + grouped(source_.vertices) +
                    " vertices (limit " + grouped(kLimits.vertices) + ", mesh_vertices) and " +
                    grouped(source_.triangles) + " triangles (limit " + grouped(kLimits.triangles) +
                    ", mesh_triangles)");

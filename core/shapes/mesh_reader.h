@@ -9,13 +9,13 @@ class Params;
 
 // Mesh object of a scene.
 struct MeshObject {
-  TriangleMesh mesh;  // empty after a problem, which Params records
+  TriangleMesh mesh;  // may be empty if Params recorded a problem
   std::optional<double> crease_degrees;
   Keyframes<VertexKey> keys;  // empty if static
 };
 
-// Reads the meshes of a scene. Limits apply to their sum, because many objects and keys may name one file.
-// Records problems in Params. Throws Cancelled. Not thread-safe.
+// Reads the meshes of one scene. MeshLimits apply to the total over all objects and keyframes, because many
+// of them may name the same file. Records problems in Params. Throws Cancelled. Not thread-safe.
 class MeshReader {
  public:
   explicit MeshReader(MeshSource& source) : source_(source) {}
@@ -23,7 +23,8 @@ class MeshReader {
 
  private:
   VertexKey read_key(Params& p, const TriangleMesh& rest, const VertexKey& at_rest);
-  // Adds to the running totals. Returns false and records a problem if a limit is exceeded.
+  // Adds the counts to the totals of the scene. Returns false if a total exceeds its limit, and records a
+  // problem the first time.
   bool fits(std::size_t vertices, std::size_t triangles, Params& p);
 
   MeshSource& source_;

@@ -14,7 +14,7 @@ namespace orrery {
 template <class N>
 struct MeshTriangle {
   Corners<N> corners, normals;
-  Vec3<N> normal;  // normal of the flat triangle
+  Vec3<N> normal;  // geometric normal
   N magnitude;     // largest absolute coordinate of the mesh
 
   std::vector<HullTriangle> hull() const { return corners.hull(); }
@@ -23,12 +23,12 @@ struct MeshTriangle {
   const Core& core() const { return corners; }
   N distance(const Ray<N>& ray) const { return corners.distance(ray); }
 
-  // Interpolates the normal; uses the flat one if the vertex normals cancel.
+  // Interpolates the vertex normals, or uses the geometric normal if they cancel.
   Surface<N> surface(const Ray<N>& ray, const N&) const {
     const Vec3<N> weights = corners.weights(ray);
     const Vec3<N> sum = normals.mix(weights);
     const N size = length(sum);
-    const auto usable = size > N(ScalarOf<N>(0.001));  // smaller: the vertex normals are opposite
+    const auto usable = size > N(ScalarOf<N>(0.001));  // below: the vertex normals nearly cancel
     const auto choose = [&](const N& x, const N& flat) { return select(usable, N(x / size), flat); };
     return {corners.mix(weights),
             normal,
@@ -37,14 +37,14 @@ struct MeshTriangle {
   }
 };
 
-// Mapping from a mesh triangle to its parameters.
+// Mapping from hit points on a mesh triangle to parameters and texture coordinates.
 template <class N>
 struct MeshMapping {
   Corners<N> corners;
   Vec3<N> s, t;  // texture coordinates of the vertices
 
-  // Returns u and v as weights of the second and third vertex. The tangent is that of s if s and t span the
-  // triangle, else its first edge.
+  // u and v are the barycentric weights of the second and third vertex. The tangent points toward increasing
+  // s, or along the first edge if the texture coordinates are degenerate.
   SurfacePoint<N> parameters(const Ray<N>& ray, const Vec3<N>&) const {
     using std::abs;
     using T = ScalarOf<N>;
@@ -58,7 +58,7 @@ struct MeshMapping {
   }
 };
 
-// Triangles of several meshes with shared vertices.
+// Indexed triangles of several meshes.
 template <class T>
 struct MeshTable {
   struct Part {
@@ -70,7 +70,7 @@ struct MeshTable {
   std::vector<Vec3<T>> positions, normals;
   std::vector<std::array<T, 2>> uvs;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<Part> parts;  // in the order of their triangles
+  std::vector<Part> parts;  // ascending by `first`
 
   Corners<T> corners(std::size_t i) const {
     const auto& [a, b, c] = triangles[i];
@@ -103,7 +103,8 @@ class MeshRecords {
   }
 
   std::size_t size() const { return flat_.size(); }
-  // Returns one corner three times for a triangle without area, so that rounding cannot produce a hit.
+  // Returns the corners of triangle i, or its first corner three times if it has no area. Rounding therefore
+  // cannot produce a hit with a degenerate triangle.
   Corners<T> core(std::size_t i) const {
     const Corners<T> corners = table_.corners(i);
     return flat_[i] == Vec3<T>() ? Corners<T>{corners.a, corners.a, corners.a} : corners;
@@ -120,8 +121,8 @@ class MeshRecords {
 
   template <class N>
   using Mapping = MeshMapping<N>;
-  // Mappings of the triangles. Without texture coordinates they use the weights of the second and third
-  // vertex.
+  // Mappings of the triangles. In meshes without texture coordinates, s and t are the weights of the second
+  // and third vertex.
   struct Mappings {
     const MeshRecords& records;
     MeshMapping<T> operator[](std::size_t i) const {

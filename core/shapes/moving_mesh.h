@@ -15,17 +15,18 @@ struct VertexKey {
   SharedVectors positions, normals;
 };
 
-// Interpolates vertices linearly, and renormalizes normals.
+// Interpolates positions and normals linearly with `share` in (0, 1), and renormalizes the normals. If two
+// normals cancel, uses that of `before`.
 VertexKey mix(const VertexKey& before, const VertexKey& after, double share);
 
-// Mesh with moving vertices. Keeps triangles that have no area for a while.
+// Mesh with moving vertices. Keeps triangles that are degenerate at some times.
 struct MovingMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::array<double, 2>> uvs;  // one per vertex, or empty
   Keyframes<VertexKey> keys;
-  // If set, smooth_normals() computes the normals, around vertices that coincide at the time. If that
-  // compares more than `max_pairs` pairs, because many vertices meet for a moment, only those that coincide
-  // at all keys are used.
+  // If set, at() smooths normals with smooth_normals(), across vertices that coincide at that time. If this
+  // would compare more than `max_pairs` triangle pairs, because many vertices coincide for a moment, at()
+  // uses `always` instead.
   std::optional<double> crease_degrees;
   PositionIndices always;  // vertices that coincide at all keys
   std::uint64_t max_pairs;
@@ -33,8 +34,9 @@ struct MovingMesh {
   // Returns the mesh at `time`, in seconds, with its triangles in the same order. Thread-safe. Throws
   // Cancelled.
   TriangleMesh at(double time) const;
-  // Returns vectors for all corners, three per triangle, to interpolate between the moments of an exposure:
-  // the keys' normals, or the smoothed normals at `time`. Empty for a flat mesh.
+  // Returns three normals per triangle, to be interpolated between the moments of an exposure. They are the
+  // smoothed normals at `time` if `crease_degrees` is set, else the interpolated normals of the keys, not
+  // renormalized. Returns an empty list for a flat mesh.
   std::vector<Vec3d> corner_normals(double time) const;
 };
 

@@ -14,7 +14,7 @@ std::vector<Vec3<T>> in_precision(const std::vector<Vec3d>& from) {
   return to;
 }
 
-// Returns the largest absolute coordinate of a vertex in use.
+// Returns the largest absolute coordinate of the vertices that triangles use, over all moments.
 double magnitude_of(const MovingTriangles& mesh) {
   double magnitude = 0;
   for (const SharedVectors& positions : mesh.positions)
@@ -24,7 +24,7 @@ double magnitude_of(const MovingTriangles& mesh) {
   return magnitude;
 }
 
-// Mesh in the render's precision.
+// MovingTriangles in the render's precision.
 template <class T>
 class Mesh {
  public:
@@ -43,7 +43,7 @@ class Mesh {
   int first() const { return first_; }
   int last() const { return first_ + static_cast<int>(triangles_.size()); }
 
-  // Returns the corners at `time`. Triangles that share a vertex get the same position for it.
+  // Returns the corners at `time`. Triangles that share a vertex get bit-identical positions for it.
   [[gnu::always_inline]] Corners<N> corners(std::size_t triangle, const N& time) const {
     return between(time, [&, &vertices = triangles_[triangle]](std::size_t moment, std::size_t corner) {
       return positions_[moment][vertices[corner]];
@@ -75,7 +75,7 @@ class Mesh {
   }
 
  private:
-  // Interpolates at(moment, corner), the value of a corner at a moment.
+  // Interpolates at(moment, corner) linearly between moments, for each corner.
   template <class At>
   [[gnu::always_inline]] Corners<N> between(const N& time, const At& at) const {
     Corners<N> now{};
@@ -98,7 +98,7 @@ class Mesh {
 };
 
 // Returns the unit normal by the right-hand rule, or NaN for a triangle without area. Scales the sides first,
-// so that the size of the triangle does not matter.
+// so that products of tiny or huge sides do not underflow or overflow.
 template <class N>
 Vec3<N> flat_normal(const Corners<N>& corners) {
   const auto side = [&](const Vec3<N>& to) {
@@ -167,15 +167,15 @@ class Kernel final : public ShapeKernel<T> {
   }
 
  private:
-  // Returns null for static triangles.
+  // Returns the mesh that contains primitive `index`, or null if the primitive is static.
   const Mesh<T>* mesh_of(int index) const {
     const auto mesh = std::upper_bound(meshes_.begin(), meshes_.end(), index,
                                        [](int i, const Mesh<T>& m) { return i < m.last(); });
     return mesh != meshes_.end() && index >= mesh->first() ? &*mesh : nullptr;
   }
 
-  // Returns the distance of a hit, or infinity for a triangle without area, which rounding could otherwise
-  // let a ray hit.
+  // Returns the distance of the hit, or infinity for a miss. A triangle without area is a miss, although
+  // rounding could produce a hit. Distances above `limit` may be returned as infinity.
   [[gnu::always_inline]] static N distance(const Mesh<T>& mesh, int index, const RayBatch<T>& rays, int i,
                                            const N& limit) {
     const Corners<N> corners = mesh.corners(static_cast<std::size_t>(index - mesh.first()), rays.time.at(i));

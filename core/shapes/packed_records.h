@@ -11,7 +11,7 @@
 
 namespace orrery {
 
-// Part of a record that distance() needs: its Core if it names one, else the whole record.
+// Part of a record that distance() needs: its Core if it defines that type, else the whole record.
 template <template <class> class Record, class N>
 struct CoreOf {
   using type = Record<N>;
@@ -24,12 +24,12 @@ struct CoreOf<Record, N> {
   static const type& of(const Record<N>& record) { return record.core(); }
 };
 
-// Implementation of PackedPrimitives. Uses a core's distance() for a SingleRay or Packet if it has one, else
-// its distance() for plain rays.
+// Implementation of PackedPrimitives. Calls Core::distance() with a SingleRay or a Packet if Core has this
+// overload, else with a plain Ray.
 template <template <class> class Record, class T>
 class PackedRecords final : public PackedPrimitives<T> {
  public:
-  // Packs records.core(i), the input of distance() for record i. REQUIRES: no block of `indices` is empty.
+  // Packs records.core(i) for each index i. REQUIRES: `indices` fill whole blocks, and no block is empty.
   template <class Records>
   PackedRecords(const Records& records, int first, std::span<const int> indices) : first_(first) {
     blocks_.reserve(indices.size() / kB);
@@ -125,9 +125,9 @@ class PackedRecords final : public PackedPrimitives<T> {
   static constexpr std::size_t kCoreFields = sizeof(Core<T>) / sizeof(T);
 
   struct Block {
-    Core<B> core;  // empty entries repeat the last one
+    Core<B> core;  // empty lanes repeat the last filled one
     std::array<IndexOf<T>, kB> id;
-    unsigned count;  // number of filled entries, which come first
+    unsigned count;  // number of filled lanes, which precede the empty ones
     unsigned filled() const { return (1u << count) - 1u; }
   };
 
@@ -158,7 +158,7 @@ class PackedRecords final : public PackedPrimitives<T> {
     else
       return core.distance(Ray<B>{Vec3<B>(single.ray.origin), Vec3<B>(single.ray.direction)});
   }
-  // Returns the distance of one primitive in every lane.
+  // Returns the distance along each ray of the packet to one primitive.
   [[gnu::always_inline]] static N distance(const Core<T>& core, const Packet<T>& packet) {
     if constexpr (requires { core.distance(packet); }) {
       return core.distance(packet);
@@ -177,8 +177,8 @@ class PackedRecords final : public PackedPrimitives<T> {
     return static_cast<unsigned>(stdx::popcount(hit.t > N(T(0))));
   }
 
-  // Stores the nearest hit of the lanes `reached`, with the lowest number. REQUIRES: t <= hit.t in these
-  // lanes.
+  // Replaces `hit` by the nearest hit of the lanes `reached`. Equal distances go to the lower primitive
+  // number. REQUIRES: t <= hit.t in these lanes.
   static void take_nearest(const Block& block, const B& t, unsigned reached, SingleHit<T>& hit) {
     for (; reached != 0; reached &= reached - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(reached));
@@ -188,8 +188,8 @@ class PackedRecords final : public PackedPrimitives<T> {
     }
   }
 
-  // Calls `visit` with the core and the number of each primitive that the packet may hit. Subtracts the tests
-  // from `budget`.
+  // Calls visit(core, primitive number) for each primitive that the packet may hit. Subtracts 1 for the block
+  // and 1 for each of these primitives from `budget`.
   template <class Visit>
   [[gnu::always_inline]] static void for_each(const Block& block, const Packet<T>& packet, int& budget,
                                               const Visit& visit) {

@@ -7,7 +7,7 @@ namespace orrery {
 
 template <class N>
 void Plane<N>::read(Params& p, std::vector<Plane<double>>& out) {
-  const Vec3d point = p.point("point", "Any point of the plane, in metres.");
+  const Vec3d point = p.point("point", "Any point on the plane, in metres.");
   const Vec3d normal = p.direction("normal", "Normal of the front side.");
   out.push_back({point, normal});
 }

@@ -18,7 +18,7 @@ struct Plane {
   Boundsd bounds() const { return Boundsd::everything(); }
   Vec3d anchor() const { return point; }
 
-  // Returns infinity for a parallel ray: its quotient is infinite or NaN.
+  // Returns infinity for a miss. The quotient of a parallel ray is infinite or NaN, and counts as a miss.
   N distance(const Ray<N>& ray) const {
     using T = ScalarOf<N>;
     const N t = dot(point - ray.origin, normal) / dot(ray.direction, normal);
@@ -32,7 +32,7 @@ struct Plane {
     return {position, normal, normal, max(max_component(abs(position)), max_component(abs(point)))};
   }
 
-  // Returns metres from `point` along two axes of the plane.
+  // u and v are the distances from `point` along two perpendicular axes of the plane, in metres.
   SurfacePoint<N> parameters(const Ray<N>&, const Vec3<N>& position) const {
     const Tangents<N> axes = tangents_of(normal);
     const Vec3<N> from = position - point;

@@ -9,14 +9,14 @@
 //   static void read(Params&, std::vector<Sphere<double>>& out);   appends the primitives of one object;
 //                                                 in the .cpp, which registers the type
 //   Boundsd bounds() const;                                        of a Sphere<double>
-//   N distance(const Ray<N>&) const;              the smallest t > 0 of a hit, or +infinity (or NaN) for none
+//   N distance(const Ray<N>&) const;              the smallest t > 0 of a hit; +infinity or NaN for a miss
 //   Surface<N> surface(const Ray<N>&, const N& t) const;
 //   SurfacePoint<N> parameters(const Ray<N>&, const Vec3<N>& position) const;   of a position on the shape
-//   Vec3d anchor() const;                         if it may be unbounded: a point that places it
+//   Vec3d anchor() const;                         if it may be unbounded: see ShapeSet::anchor_magnitude()
 //   std::vector<HullTriangle> hull() const;       if tighter than bounds(): see ShapeKernel
-//   Patch patch() const;                          of a Sphere<double>, if light can be sampled from it; or
-//                                                 std::optional<Patch>, if only from some
-//   Core, core()                                  if distance() needs only a part: see packed_records.h
+//   Patch patch() const;                          of a Sphere<double>, if light can be sampled from it;
+//                                                 std::optional<Patch> if that depends on the shape
+//   Core, core()                                  if distance() needs only part of it: see packed_records.h
 // and `make_shape_set<Sphere>` as its factory. Formulas are evaluated for scalars and for lanes.
 namespace orrery {
 
@@ -32,7 +32,7 @@ class PlainRecords {
   const Record<T>& operator[](std::size_t i) const { return records_[i]; }
   decltype(auto) core(std::size_t i) const { return CoreOf<Record, T>::of(records_[i]); }
 
-  // Record that maps positions to parameters.
+  // Record type whose parameters() maps positions to parameters.
   template <class N>
   using Mapping = Record<N>;
   const PlainRecords& mappings() const { return *this; }
@@ -41,7 +41,8 @@ class PlainRecords {
   std::vector<Record<T>> records_;
 };
 
-// Writes the lanes of `mine` of register i, with normals on the side that rays along `direction` come from.
+// Writes `s` to the lanes `mine` of register i. Turns normals to the side that rays along `direction` come
+// from.
 template <class T>
 [[gnu::always_inline]] inline void put_surface(const Surface<Lanes<T>>& s, const Vec3<Lanes<T>>& direction,
                                                int i, const MaskOf<Lanes<T>>& mine, SurfaceBatch<T>& out) {

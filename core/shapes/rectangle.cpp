@@ -11,7 +11,8 @@ void Rectangle<N>::read(Params& p, std::vector<Rectangle<double>>& out) {
   const Vec3d corner = p.point("corner", "A corner, in metres.");
   const Vec3d a = p.point("edge_u", "Vector from the corner along one side, in metres.");
   const Vec3d b = p.point(
-      "edge_v", "Vector along the other side, at right angles to edge_u; the front faces edge_u x edge_v.");
+      "edge_v",
+      "Vector along the other side, perpendicular to edge_u, in metres; the front faces edge_u x edge_v.");
   const double length_a = length(a), length_b = length(b);
   if (!(length_a > 0)) p.fail("edge_u", "must be longer than 0 m");
   if (!(length_b > 0)) p.fail("edge_v", "must be longer than 0 m");

@@ -5,11 +5,10 @@
 
 namespace orrery {
 
-// Flat rectangle.
 template <class N>
 struct Rectangle {
-  Vec3<N> corner, a, b;          // two perpendicular sides
-  Vec3<N> per_a, per_b, normal;  // a / |a|^2, b / |b|^2, unit
+  Vec3<N> corner, a, b;          // a corner and two perpendicular sides
+  Vec3<N> per_a, per_b, normal;  // a / |a|^2, b / |b|^2, unit normal
   N magnitude;                   // largest absolute coordinate
 
   static constexpr ShapeTraits kTraits = {.convex = true, .closed = false};
@@ -23,7 +22,7 @@ struct Rectangle {
   }
   Patch patch() const { return {Patch::Kind::rectangle, corner, a, b}; }
 
-  // Coordinates of a point in units of the two sides.
+  // Coordinates of a point along `a` and `b`; in [0, 1] inside the rectangle.
   struct Shares {
     N u, v;
   };

@@ -4,8 +4,7 @@
 
 namespace orrery {
 
-// One line per type, in the order in which primitives are numbered. Each type is defined in the file of its
-// name.
+// One line per type, in the order in which primitives are numbered. NAME.cpp defines NAME_type().
 // clang-format off
 #define ORRERY_SHAPES(add) \
   add(sphere)              \

@@ -6,14 +6,15 @@
 
 namespace orrery {
 
-// Returns the extent along x, y and z of a circle of radius 1 perpendicular to the unit vector `axis`. It is
-// sqrt(1 - a^2) for each component a, computed from the other two, because 1 - a^2 rounds to 0 for a tilt
-// below 1.5e-8.
+// Returns the half-extents along x, y and z of a circle of radius 1 perpendicular to the unit vector `axis`.
+// Each is sqrt(1 - a^2) for one component a, but computed from the other two: 1 - a^2 rounds to 0 for a tilt
+// below 1.5e-8 radians.
 inline Vec3d round_reach(const Vec3d& axis) {
   return {std::hypot(axis.y, axis.z), std::hypot(axis.x, axis.z), std::hypot(axis.x, axis.y)};
 }
 
-// Returns the box around a cylinder, aligned with its axis; flat if half_length is 0.
+// Returns the triangles of the box around a cylinder, aligned with its axis. The box is flat if `half_length`
+// is 0.
 inline std::vector<HullTriangle> round_hull(const Vec3d& center, const Vec3d& axis, double radius,
                                             double half_length) {
   const Vec3d w = safe_normalize(axis), size = abs(w);

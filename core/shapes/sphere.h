@@ -12,10 +12,10 @@ struct Ball {
   Vec3<N> center;
   N radius;
 
-  // Returns the distance of the nearest hit. The discriminant uses the part of origin - centre perpendicular
-  // to the ray, and the constant term is a product. Neither cancels if the origin is far away or close to a
-  // huge sphere (Haines, Guenther, Akenine-Moeller, "Precision Improvements for Ray/Sphere Intersection", Ray
-  // Tracing Gems, 2019).
+  // Returns the distance of the nearest hit ahead of the origin, or infinity for a miss. The discriminant
+  // uses the part of origin - centre perpendicular to the ray, and the constant term is a product. Neither
+  // cancels if the origin is far away or close to a huge sphere (Haines, Guenther, Akenine-Moeller,
+  // "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems, 2019).
   N distance(const Ray<N>& ray) const {
     using T = ScalarOf<N>;
     using std::sqrt;
@@ -37,9 +37,10 @@ struct Ball {
     return select(meets, nearest, infinity);
   }
 
-  // Returns false for spheres that no active ray of the packet can hit. Sheared to run along z, all rays then
-  // pass the centre, at its own z, on the same side. Their distance exceeds the radius over the smallest
-  // cosine of their angle with z. The radius is padded for the rounding of this distance.
+  // Returns false for spheres that no active ray of the packet can hit. Along x, a ray passes the centre's z
+  // at an offset of x - shear * z. It misses if this offset exceeds the radius over the cosine of its angle
+  // with z. The packet misses if this is true, on the same side, for both ends of the range of shears. The
+  // same test applies along y. The radius is padded for the rounding of the offset.
   MaskOf<N> may_meet(const Packet<ScalarOf<N>>& packet) const {
     using T = ScalarOf<N>;
     if (!packet.one_origin) return MaskOf<N>(true);
@@ -61,7 +62,6 @@ struct Ball {
   }
 };
 
-// Sphere.
 template <class N>
 struct Sphere {
   Ball<N> ball;
@@ -84,8 +84,8 @@ struct Sphere {
     return {ball.center + normal * ball.radius, normal, normal, magnitude};
   }
 
-  // Returns u: turns around the y axis from +x, anticlockwise seen from above. v: 0 at the bottom, 1 at the
-  // top.
+  // u is the angle around the y axis in turns, in [0, 1], from +x, anticlockwise as seen from above. v rises
+  // linearly with latitude from 0 at the bottom to 1 at the top.
   SurfacePoint<N> parameters(const Ray<N>&, const Vec3<N>& position) const {
     using T = ScalarOf<N>;
     using std::sqrt;

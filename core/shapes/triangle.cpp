@@ -9,10 +9,10 @@ namespace orrery {
 template <class N>
 void Triangle<N>::read(Params& p, std::vector<Triangle<double>>& out) {
   std::vector<Vec3d> v =
-      p.points("vertices", "Three vertices in metres, anticlockwise from the front.", {3, 3});
+      p.points("vertices", "Three vertices in metres, anticlockwise as seen from the front.", {3, 3});
   v.resize(3);
   const Vec3d normal = face_normal(v[0], v[1], v[2]);
-  if (normal == Vec3d()) p.fail("vertices", "must be three points that are not on one line");
+  if (normal == Vec3d()) p.fail("vertices", "must be three points that are not collinear");
   out.push_back({{v[0], v[1], v[2]}, normal, Boundsd::of({v[0], v[1], v[2]}).magnitude()});
 }
 

@@ -7,7 +7,7 @@
 
 namespace orrery {
 
-// Single triangle.
+// Single triangle, not part of a mesh.
 template <class N>
 struct Triangle {
   Corners<N> corners;
@@ -30,7 +30,7 @@ struct Triangle {
     return {corners.mix(corners.weights(ray)), normal, normal, magnitude};
   }
 
-  // Returns the weights of the second and third vertex.
+  // u and v are the barycentric weights of the second and third vertex.
   SurfacePoint<N> parameters(const Ray<N>& ray, const Vec3<N>&) const {
     const Vec3<N> weights = corners.weights(ray);
     return {weights.y, weights.z, weights.y, weights.z, normalize(corners.b - corners.a)};

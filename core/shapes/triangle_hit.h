@@ -15,7 +15,7 @@ struct TriangleHit {
 
 namespace detail {
 
-// Returns one coordinate of a point relative to `origin`. Either may be the same for all lanes.
+// Returns coordinate `axis` of point - origin. Scalar points or origins apply to all lanes.
 template <class N, class V, class O>
 [[gnu::always_inline]] inline N moved(const Vec3<V>& point, const Vec3<O>& origin, int axis) {
   return N(point[axis]) - N(origin[axis]);
@@ -23,13 +23,14 @@ template <class N, class V, class O>
 
 }  // namespace detail
 
-// Point in the space of a ray that is permuted and sheared to run along its largest axis z.
+// Point in ray space: axes are permuted so that z is the largest component of the ray's direction, and
+// sheared so that the ray runs along z.
 template <class N>
 struct Sheared {
   N x, y, z;
 };
 
-// Transform with separate axes for each lane's ray.
+// Transform to ray space with separate axes for each lane.
 template <class N>
 class OwnAxes {
  public:
@@ -48,7 +49,7 @@ class OwnAxes {
   Shear<N> shear_;
 };
 
-// Transform with the same axes for all lanes: those of a SingleRay or a Packet.
+// Transform to ray space with the axes of a SingleRay or a Packet, which are the same for all lanes.
 template <class N, class Rays>
 class SharedAxes {
  public:
@@ -66,12 +67,12 @@ class SharedAxes {
   const Rays& rays_;
 };
 
-// Intersects a ray with a triangle, watertight: a ray through a shared edge or vertex hits one of the
-// triangles around it, in any precision. Each edge is classified by the sign of a 2D edge function that both
-// its triangles compute from the same numbers (Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection",
-// JCGT 2013). The products of the edge functions are not rounded before subtraction. The vertex weights are
-// therefore as exact as the sheared vertices, even for thin triangles and grazing rays. Points interpolated
-// by the weights lie within a few roundings of the ray.
+// Intersects a ray with a triangle, watertight: a ray through a shared edge or vertex hits at least one of
+// the triangles around it, in any precision. Each edge is classified by the sign of a 2D edge function that
+// both adjacent triangles compute from the same numbers (Woop, Benthin, Wald, "Watertight Ray/Triangle
+// Intersection", JCGT 2013). The products of the edge functions are not rounded before subtraction. The
+// vertex weights are therefore as exact as the sheared vertices, even for thin triangles and grazing rays.
+// Points interpolated by the weights are within a few roundings of the ray.
 template <class N, class Axes, class V>
 [[gnu::always_inline]] inline TriangleHit<N> intersect_triangle(const Axes& axes, const Vec3<V>& a,
                                                                 const Vec3<V>& b, const Vec3<V>& c) {
@@ -85,14 +86,15 @@ template <class N, class Axes, class V>
   const auto inside = min_first(min_first(u, v), w) >= zero || max_first(max_first(u, v), w) <= zero;
   const N determinant = u + v + w, inverse = N(T(1)) / determinant;
   const N z = (u * sa.z + v * sb.z + w * sc.z) * inverse, t = z / axes.along();
-  // Hits within the rounding error of their distance are the ray's own origin.
+  // A distance below its rounding error means that the ray starts on the triangle. This is not a hit.
   const N farthest = max_first(max_first(abs(sa.z), abs(sb.z)), abs(sc.z));
   const auto met = inside && determinant != zero && t > zero &&
                    abs(z) > farthest * (4 * std::numeric_limits<T>::epsilon());
   return {select(met, t, infinity), u * inverse, v * inverse, w * inverse};
 }
 
-// Values at the corners of a triangle. Positions are all that the intersection test needs.
+// Values at the corners of a triangle, such as positions or normals. The intersection test needs positions
+// only.
 template <class N>
 struct Corners {
   Vec3<N> a, b, c;
@@ -104,14 +106,14 @@ struct Corners {
   N distance(const SingleRay<ScalarOf<N>>& single) const {
     return distance_by(SharedAxes<N, SingleRay<ScalarOf<N>>>(single));
   }
-  // Returns the distance of one triangle in every lane.
+  // Returns the distance along each ray of the packet to one triangle.
   template <class T>
   Lanes<T> distance(const Packet<T>& packet) const requires std::is_same_v<T, N> {
     return intersect_triangle<Lanes<T>>(SharedAxes<Lanes<T>, Packet<T>>(packet), a, b, c).t;
   }
-  // Returns false for triangles that no active ray of the packet can hit: their corners, sheared for these
-  // rays, lie on one side of an axis. Rounded shears stay within the rounded limits, because rounding is
-  // monotonic.
+  // Returns false for triangles that no active ray of the packet can hit: their corners, sheared for any of
+  // these rays, are on one side of the x or y axis. Rounding is monotonic, so a rounded shear stays between
+  // the rounded limits.
   MaskOf<N> may_meet(const Packet<ScalarOf<N>>& packet) const {
     if (!packet.one_origin) return MaskOf<N>(true);
     return !misses_side(packet, 0) && !misses_side(packet, 1);

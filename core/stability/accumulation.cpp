@@ -7,7 +7,7 @@
 namespace orrery {
 namespace {
 
-// Scene with a sky, and a ball behind the camera.
+// Scene with a constant background. Its only object is a ball behind the camera.
 constexpr const char* kSky = R"({"version": 1, "background": [0.1, 0.1, 0.1],
   "camera": {"type": "perspective", "eye": [0, 0, 4], "look_at": [0, 0, 0]}, "materials": {"m": {"type": "rough"}},
   "objects": [{"type": "sphere", "center": [0, 0, 900], "radius": 1, "material": "m"}]})";
@@ -35,9 +35,9 @@ StabilityRow accumulation_row() {
           "Sums of samples",
           "mean of 1,024 samples of radiance 0.1: relative error",
           "1",
-          "one sum in float",
+          "one running sum in float",
           1e-6,
-          "sums of the film, in double",
+          "sums in double, as in the film",
           1e-12,
           measure};
 }

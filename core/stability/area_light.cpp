@@ -6,7 +6,7 @@
 namespace orrery {
 namespace {
 
-// Returns standard deviation over mean of estimate(u, v) on an even grid of n x n points.
+// Returns the standard deviation of estimate(u, v) over its mean, on a regular grid of n x n points.
 template <class Estimate>
 double relative_deviation(int n, const Estimate& estimate) {
   double sum = 0, squares = 0;
@@ -20,7 +20,8 @@ double relative_deviation(int n, const Estimate& estimate) {
   return std::sqrt(std::max(0.0, squares / n / n - mean * mean)) / mean;
 }
 
-// Compares estimators for a square of side 1, parallel to a surface and `height` above its middle.
+// Returns the relative deviation of both estimators for a square light of side 1 m. The light is parallel to
+// the surface, and its centre is `height` metres above the point.
 StabilityFigures deviations(double height) {
   const auto light = make_emitter(
       {Patch::Kind::rectangle, Vec3d(-0.5, height, -0.5), Vec3d(1, 0, 0), Vec3d(0, 0, 1)}, Vec3d(1));
@@ -38,7 +39,7 @@ StabilityFigures deviations(double height) {
 StabilityFigures measure() {
   LineChart chart{"area-light",
                   "Noise of one sample of a square light of side 1 m",
-                  "height above its centre, m",
+                  "distance from its centre, m",
                   "standard deviation / mean",
                   true,
                   true,
@@ -54,16 +55,17 @@ StabilityFigures measure() {
 }  // namespace
 
 StabilityRow area_light_row() {
-  return {"B16",
-          "Square light at one centimetre",
-          "light of a square of 1 m on a point 1 cm in front of its centre: standard deviation of a sample, "
-          "relative to the mean",
-          "1",
-          "points sampled uniformly by area (Cook, Porter, Carpenter 1984)",
-          25,
-          "points sampled uniformly by solid angle (Urena, Fajardo, King 2013)",
-          1,
-          measure};
+  return {
+      "B16",
+      "Square light at a distance of 1 cm",
+      "irradiance 1 cm in front of the centre of a square light of side 1 m: standard deviation of a sample, "
+      "relative to the mean",
+      "1",
+      "points sampled uniformly by area (Cook, Porter, Carpenter 1984)",
+      25,
+      "points sampled uniformly by solid angle (Urena, Fajardo, King 2013)",
+      1,
+      measure};
 }
 
 }  // namespace orrery

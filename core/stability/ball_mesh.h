@@ -10,7 +10,7 @@
 
 namespace orrery {
 
-// Closed sphere of 24 x 48 facets, with the triangles around each vertex and each edge.
+// Closed mesh of a sphere with 24 rings of 48 sectors: 1,106 vertices and 2,208 triangles.
 struct BallMesh {
   static constexpr int kRings = 24, kSectors = 48;
   std::vector<Vec3d> positions;
@@ -38,7 +38,7 @@ struct BallMesh {
     }
   }
 
-  // Returns the numbers of the triangles with this vertex.
+  // Returns the indices of the triangles with this vertex.
   std::vector<int> around(int vertex) const {
     std::vector<int> found;
     for (std::size_t t = 0; t < triangles.size(); ++t)
@@ -47,8 +47,9 @@ struct BallMesh {
     return found;
   }
 
-  // Returns a ray from within half of the radius of 2, aimed at this vertex or at the middle of one of its
-  // edges. One of the triangles in `fan` must stop the ray. Positions are rounded to T.
+  // Returns a ray with positions rounded to T. Its origin is random and at most 1 m from `center`. Its target
+  // is `vertex` or the midpoint of an edge at it, so the ray must hit a triangle of `fan`. REQUIRES: `fan` is
+  // around(vertex).
   template <class T>
   Ray<T> ray_at(int vertex, const std::vector<int>& fan, const Vec3d& center, SplitMix& random) const {
     const auto& triangle = triangles[static_cast<std::size_t>(

@@ -8,13 +8,13 @@
 
 namespace orrery {
 
-// Ray and box.
+// Axis-aligned box and a ray to test it with.
 template <class N>
 struct BoxTest {
   Vec3<N> lo, hi, origin, direction;
 
-  // Moves the ray's origin to 0, so that the margin for its rounding hides no error. REQUIRES: differences
-  // are exact.
+  // Moves ray and box so that the ray's origin is 0. The slab test pads by the rounding of the origin, and
+  // this padding could hide errors. REQUIRES: lo - origin and hi - origin are exact.
   void start_from_zero() {
     lo = lo - origin;
     hi = hi - origin;
@@ -27,9 +27,8 @@ struct BoxTest {
   }
 };
 
-// Returns a ray that hits a corner of a box exactly, at a t that is a power of two. All numbers are integer
-// multiples of `unit` with one spare bit, so that corner - origin is exact. The box has no extent along one
-// axis.
+// Returns a ray that hits a corner of a flat box exactly, at a t that is a power of two. All coordinates are
+// integer multiples of `unit`, small enough that corner - origin is exact.
 template <class T>
 BoxTest<T> ray_through_a_corner(SplitMix& random, T unit) {
   constexpr int kBits = std::numeric_limits<T>::digits - 2;

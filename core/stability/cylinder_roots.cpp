@@ -33,7 +33,8 @@ StabilityFigures measure() {
 StabilityRow cylinder_roots_row() {
   return {"A7",
           "Roots of a cylinder",
-          "distance to a cylinder along slanted rays and rays of length 2: largest relative error",
+          "distance to a cylinder along slanted rays and rays with directions of length 2: largest relative "
+          "error",
           "1",
           "(-B - sqrt(D)) / 2 * A as printed, without parentheses around 2 A",
           10,

@@ -9,7 +9,7 @@
 namespace orrery {
 namespace {
 
-// Scene of two balls on a floor of 2 m, moved by `offset` along each axis.
+// Returns a scene of two balls on a floor 2 m wide, moved by `offset` metres along each axis.
 std::shared_ptr<const Scene> scene_at(double offset) {
   const auto at = [&](double x, double y, double z) {
     return printed("[%.17g, %.17g, %.17g]", offset + x, offset + y, offset + z);
@@ -50,8 +50,8 @@ StabilityFigures measure() {
 
 StabilityRow far_scene_row() {
   return {"A18",
-          "Scene at a thousand kilometres",
-          "image of a scene of 2 m moved by 1e6 m along each axis: largest change of a value",
+          "Scene 1,000 km from the origin",
+          "image of a scene 2 m wide, moved by 1e6 m along each axis: largest change of a pixel value",
           "radiance",
           "float, whose spacing there is 0.06 m",
           0.5,

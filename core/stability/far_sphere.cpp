@@ -9,22 +9,23 @@ namespace {
 
 constexpr int kRays = 20'000;
 
-// Returns whether b^2 - 4 a c has roots (Glassner, "An Introduction to Ray Tracing", 1989, chapter 2). The
-// sphere has radius 1 and centre 0.
+// Returns whether the discriminant b^2 - 4 a c is at least 0 (Glassner, "An Introduction to Ray Tracing",
+// 1989, chapter 2). The sphere has radius 1 and centre 0.
 bool textbook_meets(const Ray<float>& ray) {
   const float a = dot(ray.direction, ray.direction), b = 2 * dot(ray.origin, ray.direction);
   const float c = dot(ray.origin, ray.origin) - 1;
   return b * b - 4 * a * c >= 0;
 }
 
-// Returns whether a ray hits the sphere, i.e. passes the centre at a distance of at most 1, in double.
+// Returns the exact result, computed in double: whether the line of the ray passes the centre at a distance
+// of at most 1.
 bool meets(const Ray<float>& ray) {
   const Vec3d o(ray.origin), d(ray.direction);
   const Vec3d closest = o - d * (dot(o, d) / dot(d, d));
   return dot(closest, closest) <= 1;
 }
 
-// Returns the percentage of rays that are decided wrongly. The rays start `distance` radii away and pass the
+// Returns the percentage of rays with a wrong hit or miss. The rays start `distance` radii away and pass the
 // centre at up to 1.2 radii.
 StabilityFigures wrong_from(double distance) {
   const Ball<float> ball{Vec3f(), 1};
@@ -44,8 +45,8 @@ StabilityFigures wrong_from(double distance) {
 StabilityFigures measure() {
   LineChart chart{"far-sphere",
                   "Wrong hits and misses of a sphere, in float",
-                  "distance, radii",
-                  "rays decided wrongly, %",
+                  "distance from the sphere, radii",
+                  "wrong hits and misses, %",
                   true,
                   true,
                   {{"textbook", {}}, {"perpendicular residue", {}}}};
@@ -64,7 +65,7 @@ StabilityFigures measure() {
 StabilityRow far_sphere_row() {
   return {"A1",
           "Distant sphere",
-          "hits and misses of a sphere that is 10,000 radii away, in float: rays decided wrongly",
+          "rays toward a sphere 10,000 radii away, in float: wrong hits and misses",
           "%",
           "discriminant b^2 - 4 a c (Glassner 1989)",
           20,

@@ -5,8 +5,8 @@
 namespace orrery {
 
 // Returns the reflectance of unpolarised light between dielectrics by the textbook formula (Born, Wolf,
-// "Principles of Optics", 1.5.2), in long double. `eta` is the index before over the index behind. Returns 1
-// beyond the critical angle.
+// "Principles of Optics", 1.5.2), in long double. `cosine` is that of the angle of incidence. `eta` is the
+// refractive index on the incident side over that on the other side. Returns 1 beyond the critical angle.
 inline double textbook_fresnel(long double eta, long double cosine) {
   const long double sine2 = eta * eta * (1 - cosine * cosine);
   if (sine2 >= 1) return 1;

@@ -38,7 +38,8 @@ std::vector<double> means_of(const TileSums& sums) {
   return means;
 }
 
-// Returns half of the difference between the means of even and of odd samples.
+// Returns half of the difference between the mean of the even and the mean of the odd samples, for each
+// pixel.
 std::vector<double> even_odd_differences(SampledTile& tile) {
   std::vector<double> differences(kSide * kSide), before(kSide * kSide);
   for (int sample = 0; sample < kSamples; ++sample) {
@@ -68,16 +69,17 @@ StabilityFigures measure() {
 }  // namespace
 
 StabilityRow halves_row() {
-  return {"certificate-18",
-          "Halves of the samples",
-          "RMS error of an image of an edge, estimated from its 16 samples: factor between estimate and true "
-          "error",
-          "1",
-          "every second sample compared with the rest (Dammertz and others 2010)",
-          4,
-          "first half of a net compared with the second half; both are nets",
-          1.6,
-          measure};
+  return {
+      "certificate-18",
+      "Error estimate from sample halves",
+      "RMS error of an image of an edge, estimated from its 16 samples per pixel: factor between estimate "
+      "and true error",
+      "1",
+      "even samples compared with odd ones (Dammertz and others 2010)",
+      4,
+      "first half of the samples compared with the second half; both halves are low-discrepancy nets",
+      1.6,
+      measure};
 }
 
 }  // namespace orrery

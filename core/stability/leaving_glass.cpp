@@ -9,7 +9,7 @@ namespace {
 
 double degrees_of(double sine) { return 360 * direction_turns(std::sqrt((1 - sine) * (1 + sine)), sine); }
 
-// Rays inside glass of index 1.5 hit its surface at 1 to 41 degrees.
+// Rays inside glass of index 1.5 reach its surface at angles of incidence from 1 to 41 degrees.
 StabilityFigures measure() {
   constexpr double kIndex = 1.5;
   const Refractive<double> glass{kIndex, 0.04, 1, Vec3d(0)};
@@ -29,11 +29,11 @@ StabilityFigures measure() {
 StabilityRow leaving_glass_row() {
   return {"D4",
           "Rays that leave glass",
-          "directions of rays that leave glass of index 1.5, at up to 41 degrees inside: largest error",
+          "directions of rays that leave glass of index 1.5, incident at up to 41 degrees: largest error",
           "degrees",
           "index ratio of entering rays, also used for leaving rays",
           50,
-          "Snell's law with the index ratio of the side of the ray",
+          "Snell's law with the index ratio for the side that the ray comes from",
           1e-10,
           measure};
 }

@@ -11,14 +11,15 @@ namespace {
 constexpr double kWidth = 660, kHeight = 360, kLeft = 84, kRight = 440, kTop = 48, kBottom = 292,
                  kZeroLane = 26;
 
-// Returns the axis that contains the values. A logarithmic axis excludes zeros.
+// Returns the axis whose range contains the values. A linear axis also contains 0. A logarithmic axis ignores
+// values of at most 0.
 Axis axis_of(std::vector<double> values, bool logarithmic, double from, double to) {
   if (logarithmic) std::erase_if(values, [](double value) { return value <= 0; });
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
   return {logarithmic ? *least : std::min(0.0, *least), *most, from, to, logarithmic};
 }
 
-// Extends a logarithmic axis to powers of ten.
+// Extends a logarithmic axis to powers of ten; returns other axes unchanged.
 Axis to_powers_of_ten(Axis axis) {
   if (!axis.logarithmic) return axis;
   axis.low = std::pow(10, std::floor(std::log10(axis.low)));
@@ -89,7 +90,7 @@ class LineDrawing {
 
   const LineChart& chart_;
   Axis x_{}, y_{};
-  bool has_zero_ = false;  // draws zeros in a lane below the y axis
+  bool has_zero_ = false;  // a logarithmic y axis has values of 0, drawn in a lane below it
   std::string text_;
 };
 

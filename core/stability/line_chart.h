@@ -6,8 +6,8 @@
 
 namespace orrery {
 
-// Draws the lines with 660 x 360 units, and their names to the right. Titles of 65 letters and names of 28
-// fit. REQUIRES: a non-zero value on each axis.
+// Returns an SVG of 660 x 360 units with the names of the lines on the right. Titles of up to 65 characters
+// and names of up to 28 fit. REQUIRES: each axis has a value above 0.
 std::string svg_of(const LineChart& chart);
 
 }  // namespace orrery

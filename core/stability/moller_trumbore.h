@@ -7,9 +7,10 @@
 
 namespace orrery {
 
-// Returns the distance to a triangle, or +infinity (Moeller, Trumbore, "Fast, Minimum Storage Ray/Triangle
-// Intersection", Journal of Graphics Tools, 1997). The printed code treats determinants below `epsilon` 1e-6
-// as 0. Leaks at edges, so only stability rows use it.
+// Returns the distance to a triangle, or +infinity for a miss (Moeller, Trumbore, "Fast, Minimum Storage
+// Ray/Triangle Intersection", Journal of Graphics Tools, 1997). Determinants of at most `epsilon` in
+// magnitude count as 0; the printed code uses 1e-6. Rays leak between adjacent triangles, so only stability
+// rows use it.
 template <class T>
 T moller_trumbore(const Ray<T>& ray, const Vec3<T>& a, const Vec3<T>& b, const Vec3<T>& c, T epsilon) {
   constexpr T kMissed = std::numeric_limits<T>::infinity();

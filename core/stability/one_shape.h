@@ -15,7 +15,7 @@ namespace orrery {
 template <class T>
 class OneShape {
  public:
-  // `object` is JSON with the material "m".
+  // `object` is the JSON of one object with the material "m".
   explicit OneShape(const std::string& object)
       : scene_(load_scene(
             R"({"version": 1, "camera": {"type": "perspective", "eye": [0, 0, 4], "look_at": [0, 0, 0]},
@@ -25,7 +25,8 @@ class OneShape {
       if (set->size() > 0) kernel_ = set->kernel(T(), 0);
   }
 
-  // Sets surface() to the hits of the rays. REQUIRES: at most kBatch rays, and all hit the object.
+  // Intersects the rays with the object and fills surface() with the hits. REQUIRES: 1 to kBatch rays, and
+  // all hit the object.
   void meet(std::span<const Ray<T>> rays) {
     batch_->count = static_cast<int>(rays.size());
     for (int i = 0; i < kBatchRoom; ++i)
@@ -37,8 +38,8 @@ class OneShape {
   }
   const SurfaceBatch<T>& surface() const { return *surface_; }
 
-  // Returns the number of rays that hit the object again when they leave it along these directions, one per
-  // hit.
+  // Continues the rays of meet() from their hits along `directions`, one per hit. Returns the number of rays
+  // that hit the object again.
   int met_again(std::span<const Vec3<T>> directions) {
     const int count = batch_->count;
     for (int i = 0; i < kBatchRoom; ++i)

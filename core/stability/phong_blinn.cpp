@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kShininess = 50, kFactor = 4.02;
 
-// Returns a unit vector from its angles to +z and around it, in degrees.
+// Returns the unit vector at the angle `from_normal` from +z and the azimuth `about`, in degrees.
 Vec3d direction_at(double from_normal, double about) {
   const auto theta = sine_cosine_turns(from_normal / 360), phi = sine_cosine_turns(about / 360);
   return {theta.sine * phi.cosine, theta.sine * phi.sine, theta.cosine};
@@ -21,15 +21,15 @@ double highlight_of(const Rough<double>& rough, const Vec3d& light, const Vec3d&
                   rough.shininess);
 }
 
-// Computes (R.V)^50 by squaring, with R mirrored by the textbook formula (Phong 1975).
+// Returns (R.V)^50 by repeated squaring, with the mirrored light direction R (Phong 1975).
 double phong(const Vec3d& light, const Vec3d& viewer) {
   const Vec3d mirrored(-light.x, -light.y, light.z);
   const double c = std::max(0.0, dot(mirrored, viewer)), c2 = c * c, c8 = c2 * c2 * c2 * c2, c16 = c8 * c8;
   return c16 * c16 * c16 * c2;
 }
 
-// Returns the largest differences over viewers within `about_most` degrees around the normal, from the
-// mirrored light or opposite to it.
+// Returns the largest differences over viewers whose azimuth is within `about_most` degrees of the mirrored
+// light's. 0 selects the plane of incidence, on both sides of the normal.
 StabilityFigures differ_at(double light_degrees, double about_most) {
   Rough<double> blinn{}, rough{};
   blinn.shininess = kFactor * kShininess;
@@ -51,7 +51,7 @@ StabilityFigures measure() {
   LineChart chart{"phong-blinn",
                   "Blinn highlight with 4.02 n instead of Phong with n = 50",
                   "angle between light and normal, degrees",
-                  "largest difference of highlights up to 1",
+                  "largest difference; highlights reach 1",
                   false,
                   true,
                   {{"any viewer", {}}, {"viewer in incidence plane", {}}}};
@@ -76,7 +76,7 @@ StabilityRow phong_blinn_row() {
           "radiance",
           "Blinn highlight with 4.02 times the exponent, which fits in the plane of incidence",
           0.9,
-          "the highlight model that the material names",
+          "highlight model that the material selects",
           1e-12,
           measure};
 }

@@ -15,14 +15,14 @@ RenderResult rendered(const std::shared_ptr<const Scene>& scene, const RenderReq
 // Film::image().
 std::vector<float> values_of(const Film& film);
 
-// One tile whose samples are traced step by step. REQUIRES: the picture is one tile, at most 32 x 32.
+// Image of one tile whose samples are traced in steps. REQUIRES: the image has at most 32 x 32 pixels.
 class SampledTile {
  public:
   SampledTile(const std::shared_ptr<const Scene>& scene, const RenderRequest& request);
 
-  // Traces `samples` more samples and returns the sums of all so far.
+  // Traces `samples` more samples per pixel and returns the sums of all samples.
   const TileSums& add(int samples);
-  // Returns the error of the last samples traced. REQUIRES: they began with the first sample.
+  // Returns the estimated error of the samples that the last add() traced. REQUIRES: it was the first add().
   const SampledError& error() const { return stats_.error; }
 
  private:

@@ -12,7 +12,7 @@ namespace {
 constexpr int kSide = 32;
 constexpr double kShare = 0.01, kError = 0.01;
 
-// Scene with a white dot in each pixel, at a random position and over a hundredth of its area.
+// Returns a scene with a white dot at a random position in each pixel, over 1 % of the pixel's area.
 std::shared_ptr<const Scene> dots() {
   SplitMix random(1);
   const double radius = std::sqrt(kShare / 3.14159265358979324);
@@ -37,9 +37,8 @@ RenderRequest request_of() {
   return request;
 }
 
-// Returns the mean of a picture that stops per pixel. A pixel stops once the halves of its samples differ by
-// at most the requested error, at 4, 8, 16 ... samples. The first half of the samples is the picture of half
-// as many.
+// Returns the mean of an image with a separate sample count per pixel. After 4, 8, 16, ... 512 samples, a
+// pixel stops if their mean differs from that of the first half by at most kError.
 double mean_by_pixels(const std::shared_ptr<const Scene>& scene) {
   constexpr int kMost = 512;
   RenderRequest request = request_of();
@@ -80,16 +79,17 @@ StabilityFigures measure() {
 }  // namespace
 
 StabilityRow rare_feature_row() {
-  return {"E20",
-          "Features that few samples hit",
-          "1,024 pixels, each with a dot on a hundredth of its area, rendered to an error of 0.01: error of "
-          "their mean",
-          "%",
-          "each pixel stops when the halves of its own samples agree (as in renderers that stop per pixel)",
-          70,
-          "one sample count for the image, from the halves of all pixels",
-          3,
-          measure};
+  return {
+      "E20",
+      "Features that few samples hit",
+      "image of 1,024 pixels with a dot on 1 % of each, rendered to an error of 0.01: relative error of the "
+      "mean",
+      "%",
+      "a sample count per pixel: each stops when the halves of its samples agree",
+      70,
+      "one sample count for the image, from the sample halves of all pixels",
+      3,
+      measure};
 }
 
 }  // namespace orrery

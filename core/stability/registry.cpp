@@ -6,7 +6,7 @@
 
 namespace orrery {
 
-// One line per row. Each row is defined in the file of its name.
+// One line per row. NAME.cpp defines NAME_row().
 // clang-format off
 #define ORRERY_STABILITY(add) \
   add(far_sphere)             \

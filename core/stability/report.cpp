@@ -11,7 +11,7 @@ std::string with_unit(const std::string& number, const std::string& unit) {
   return unit == "1" ? number : number + " " + unit;
 }
 
-// Escapes a text for a table cell.
+// Escapes "|" for a cell of a Markdown table.
 std::string cell(std::string text) {
   for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
   return text;
@@ -22,18 +22,18 @@ std::string row_of(const StabilityResult& result) {
   return "| " + std::string(row.id) + " | **" + row.name + "**: " + cell(row.quantity) + " | " +
          cell(row.known) + " | " + figure_text(result.figures.known, row.unit) + " | " + cell(row.ours) +
          " | " + figure_text(result.figures.ours, row.unit) + " | " +
-         figure_text(row.ours_at_most, row.unit) + (result.holds() ? "" : ", **not kept**") + " |\n";
+         figure_text(row.ours_at_most, row.unit) + (result.holds() ? "" : ", **exceeded**") + " |\n";
 }
 
 constexpr const char* kIntroduction = R"(# Numerical stability
 
 Each row computes one quantity twice: with a known method, as published, and with the method that orrery uses. Numbers
-are errors; 0 is exact. A test checks that the method of orrery keeps its bound. Tests name the
-same ids, which the [catalogue](stability-catalogue.md) describes.
+are errors; 0 is exact. A test checks that the error of orrery's method is within its bound. The
+[catalogue](stability-catalogue.md) describes the ids, which tests use too.
 
-`orrery stability` measures all rows on the running build (`--json` for programs; `GET /v1/stability` of the service).
-The results are the same on every machine. `orrery stability --docs docs` writes this page, and a test compares it with
-the measurements.
+`orrery stability` measures all rows with the running build. `--json` prints JSON, and the service has the endpoint
+`GET /v1/stability`. The results are the same on every machine. `orrery stability --docs docs` writes this page, and a
+test compares the page with the measurements.
 
 | id | quantity | known method | error | method of orrery | error | bound |
 |---|---|---|---|---|---|---|
@@ -42,8 +42,8 @@ the measurements.
 constexpr const char* kSpeed = R"(
 ## Speed and accuracy
 
-`orrery stability --speed` measures methods for the same task in interleaved runs. It prints their CPU time relative to
-the first method of the group, and their error. Measured on one machine:
+`orrery stability --speed` compares methods for the same task in interleaved runs. It prints the error of each method
+and its CPU time relative to the first method of its group. The chart shows the results of one machine:
 
 ![Relative CPU time and error of methods, measured on one machine](pictures/speed.svg)
 )";
@@ -67,7 +67,7 @@ std::string stability_text(std::span<const StabilityResult> results) {
     text += printed("  %12s  ", figure_text(result.figures.ours, row.unit).c_str()) + row.ours + "; " +
             (result.holds() ? "within" : "EXCEEDS") + " " + figure_text(row.ours_at_most, row.unit) + "\n";
   }
-  return text + printed("%zu of %zu rows keep their bounds\n", kept, results.size());
+  return text + printed("%zu of %zu rows are within their bounds\n", kept, results.size());
 }
 
 std::string stability_markdown(std::span<const StabilityResult> results) {

@@ -8,7 +8,7 @@
 // Stability rows: each compares the error of a known numerical method with that of the method used here.
 namespace orrery {
 
-// Line chart. A logarithmic y axis shows values of 0 in a lane below it.
+// Line chart. A logarithmic y axis shows values of 0 in a lane below the axis.
 struct LineChart {
   struct Series {
     std::string name;
@@ -20,17 +20,17 @@ struct LineChart {
   std::vector<Series> series;
 };
 
-// Errors of both methods in the row's unit: finite, at least 0; 0 is best.
+// Errors of both methods in the row's unit: finite and not negative. 0 is exact.
 struct StabilityFigures {
   double known, ours;
   std::optional<LineChart> chart = {};
 };
 
 struct StabilityRow {
-  const char* id;        // named by the tests, too
+  const char* id;        // in docs/stability-catalogue.md; used by tests
   const char* name;      // a few words
-  const char* quantity;  // computed quantity and its measured error
-  const char* unit;
+  const char* quantity;  // "quantity: error that is measured"
+  const char* unit;      // "1" for a ratio
   // Known method with its source, and a lower bound of its error.
   const char* known;
   double known_at_least;

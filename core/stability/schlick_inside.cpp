@@ -28,7 +28,7 @@ StabilityRow schlick_inside_row() {
           "Schlick's cosine inside glass",
           "reflectance of glass of index 1.5 for rays inside it: largest error",
           "reflectance",
-          "Schlick's approximation with the cosine of incidence, also inside",
+          "Schlick's approximation with the cosine of incidence, even inside glass",
           0.9,
           "Fresnel's equations; Schlick's approximation, if a scene selects it, uses the cosine in air",
           1e-12,

@@ -6,8 +6,8 @@
 namespace orrery {
 namespace {
 
-// Returns standard deviations over pixels of an estimate of 1/4. The estimate is the share of samples for
-// which the first numbers of two streams are both below 1/2.
+// Returns the RMS errors over pixels of an estimate of 1/4. The estimate is the fraction of samples for which
+// the first numbers of two streams are both below 1/2.
 StabilityFigures deviations(std::uint32_t samples) {
   constexpr std::uint32_t kPixels = 256;
   StabilityFigures squares{0, 0};
@@ -25,9 +25,8 @@ StabilityFigures deviations(std::uint32_t samples) {
 }
 
 StabilityFigures measure() {
-  LineChart chart{
-      "second-pair", "Two pairs of random numbers: estimate of 1/4", "samples", "standard deviation", true,
-      true,          {{"same order", {}}, {"separate orders", {}}}};
+  LineChart chart{"second-pair", "Two pairs of random numbers: estimate of 1/4", "samples", "RMS error", true,
+                  true,          {{"same order", {}}, {"separate orders", {}}}};
   StabilityFigures figures{0, 0};
   for (std::uint32_t samples = 4; samples <= 1024; samples *= 2) {
     const StabilityFigures at = deviations(samples);
@@ -42,16 +41,15 @@ StabilityFigures measure() {
 }  // namespace
 
 StabilityRow second_pair_row() {
-  return {
-      "light-2",
-      "Second pair of random numbers",
-      "share of 256 samples in which two numbers for different purposes are below 1/2: deviation from 1/4",
-      "1",
-      "scrambled nets in the same order for all pairs",
-      0.2,
-      "a separate order for each pair (Burley 2020)",
-      0.03,
-      measure};
+  return {"light-2",
+          "Second pair of random numbers",
+          "fraction of 256 samples whose random numbers for two purposes are both below 1/2: RMS error",
+          "1",
+          "scrambled nets in the same order for all pairs",
+          0.2,
+          "a separate order for each pair (Burley 2020)",
+          0.03,
+          measure};
 }
 
 }  // namespace orrery

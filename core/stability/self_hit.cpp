@@ -10,15 +10,15 @@ namespace {
 
 const Vec3d kNormal = safe_normalize(Vec3d(1, 2, 3));
 
-// Returns whether a ray from the computed hit o + t d meets the plane again beyond a fixed epsilon of 1e-4.
-// (Introductions use this test: Shirley, "Ray Tracing in One Weekend", takes 1e-3.)
+// Returns whether a ray that starts at the computed hit o + t d meets the plane again beyond a fixed epsilon
+// of 1e-4. Introductory texts use this test: Shirley, "Ray Tracing in One Weekend", with 1e-3.
 bool meets_again(const Ray<float>& ray, const Vec3f& at, const Vec3f& normal, const Vec3f& direction) {
   const float t = dot(at - ray.origin, normal) / dot(ray.direction, normal);
   const Vec3f hit = ray.at(t);
   return dot(at - hit, normal) / dot(direction, normal) > 1e-4f;
 }
 
-// Returns the percentage of rays that leave a plane through (c, c, c) and hit it at once.
+// Returns the percentage of rays that leave a plane through (c, c, c) and hit it again.
 StabilityFigures self_hits_at(double c) {
   constexpr int kBatches = 20;
   OneShape<float> plane(printed(R"({"type": "plane", "point": [%.17g, %.17g, %.17g], "normal": [1, 2, 3],
@@ -51,7 +51,7 @@ StabilityFigures measure() {
                   "rays, %",
                   true,
                   true,
-                  {{"fixed epsilon 1e-4", {}}, {"8 roundings", {}}}};
+                  {{"fixed epsilon 1e-4", {}}, {"offset of 8 epsilons", {}}}};
   for (const double c : {1.0, 1e1, 1e2, 1e3, 1e4, 1e5}) {
     const StabilityFigures hits = self_hits_at(c);
     chart.series[0].points.push_back({c, hits.known});
@@ -67,11 +67,12 @@ StabilityFigures measure() {
 StabilityRow self_hit_row() {
   return {"A16",
           "Shadow acne",
-          "rays that leave a plane through (1e5, 1e5, 1e5), in float: rays that hit it again at once",
+          "rays that leave a plane through (1e5, 1e5, 1e5), in float: rays that hit it again",
           "%",
           "hit at o + t d; hits nearer than a fixed epsilon of 1e-4 are ignored",
           30,
-          "hit projected onto the shape, then offset along the normal by 8 roundings of its coordinates",
+          "hit projected onto the shape, then offset along the normal by 8 machine epsilons times the "
+          "largest coordinate",
           0,
           measure};
 }

@@ -39,7 +39,7 @@ StabilityRow slab_corners_row() {
       "%",
       "slab test by min and max (Kay, Kajiya 1986)",
       10,
-      "far planes moved out by 4 roundings, and comparisons that discard NaN (Ize 2013)",
+      "far distances enlarged by 4 machine epsilons, and comparisons that ignore NaN (Ize 2013)",
       0,
       measure};
 }

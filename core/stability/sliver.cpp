@@ -17,13 +17,13 @@ Vec3f rounded_weights(const Ray<float>& ray, const Corners<float>& corners) {
   return Vec3f(u, v, w) / (u + v + w);
 }
 
-// Returns the distance in metres between the point found in the plane y = 0 and the exact intersection.
+// Returns the distance in metres between `found` and the exact intersection with the plane y = 0.
 double slip(const Ray<float>& ray, const Vec3f& found) {
   const double t = -static_cast<double>(ray.origin.y) / static_cast<double>(ray.direction.y);
   return length(Vec3d(found) - (Vec3d(ray.origin) + Vec3d(ray.direction) * t));
 }
 
-// Measures half of a strip that is 100 m long and 1 mm wide, from 10 cm above.
+// Measures rays that start 10 cm from a triangle, one half of a strip 100 m long and 1 mm wide.
 StabilityFigures measure() {
   const float w = 0.0005f, l = 50;
   const Corners<float> half{{-w, 0, -l}, {-w, 0, l}, {w, 0, -l}};
@@ -43,15 +43,16 @@ StabilityFigures measure() {
 }  // namespace
 
 StabilityRow sliver_row() {
-  return {"A15",
-          "Sliver of aspect ratio 100,000",
-          "hit points on a triangle 100 m long and 1 mm wide, in float: largest distance from the ray",
-          "m",
-          "barycentric weights from rounded products (Woop, Benthin, Wald 2013, as printed)",
-          1e-3,
-          "products that are exact until the subtraction (Dekker 1971)",
-          1e-5,
-          measure};
+  return {
+      "A15",
+      "Sliver of aspect ratio 100,000",
+      "hit points on a triangle 100 m long and 1 mm wide, in float: largest distance from the exact points",
+      "m",
+      "barycentric weights from rounded products (Woop, Benthin, Wald 2013, as printed)",
+      1e-3,
+      "products that are exact until the subtraction (Dekker 1971)",
+      1e-5,
+      measure};
 }
 
 }  // namespace orrery

@@ -7,8 +7,8 @@
 namespace orrery {
 namespace {
 
-// Counts missed right triangles with sides from 0.99 m to 0.99 pm, each hit by a ray from 1 m above.
-// Determinants are the squared sides.
+// Counts the right triangles that a ray from 1 m above misses, with legs from 0.99 m to 0.99 pm. The
+// determinants are the squares of the legs.
 StabilityFigures measure() {
   StabilityFigures missed{0, 0};
   double side = 0.99;
@@ -30,7 +30,7 @@ StabilityRow small_triangle_row() {
           "of 13",
           "determinants below 1e-6 treated as 0 (Moeller, Trumbore 1997, as printed)",
           10,
-          "only a determinant of exactly 0 is a miss",
+          "only a determinant of exactly 0 counts as a miss",
           0,
           measure};
 }

@@ -9,7 +9,7 @@
 namespace orrery {
 
 // Random number generator with the same numbers on every machine (SplitMix64: Steele, Lea, Flood, "Fast
-// splittable pseudorandom number generators", 2014). For rows and tests; pictures use Draws.
+// splittable pseudorandom number generators", 2014). For stability rows and tests; renders use Draws.
 class SplitMix {
  public:
   explicit SplitMix(std::uint64_t seed) : state_(seed) {}

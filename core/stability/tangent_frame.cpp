@@ -44,8 +44,7 @@ StabilityFigures measure() {
 StabilityRow tangent_frame_row() {
   return {"A30",
           "Tangent frame of a normal",
-          "two tangents of unit vectors near -z, in float: largest error of a length or of the cosine of an "
-          "angle",
+          "two tangents of unit vectors near -z, in float: largest error of a length or of a dot product",
           "1",
           "1 / (1 + z), with a special case for the pole (Frisvad 2012)",
           0.5,

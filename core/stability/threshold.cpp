@@ -9,8 +9,9 @@ namespace {
 
 constexpr double kThreshold = 1.0 / 255;
 
-// Scene with two slabs of glass before a sky of radiance 1, seen from a black plane. Each surface reflects
-// half of the light at normal incidence. Four such surfaces transmit 1 / 5.
+// Scene with two slabs of glass in front of a background of radiance 1. A black plane behind the camera
+// absorbs reflected rays. Each surface reflects half of the light at normal incidence. Four such surfaces
+// transmit 1 / 5.
 constexpr const char* kSlabs = R"({"version": 1, "background": [1, 1, 1],
   "camera": {"type": "orthographic", "eye": [0, 0, 5], "look_at": [0, 0, 0], "height": 1},
   "materials": {"glass": {"type": "refractive", "ior": 5.82842712474619, "fresnel": "exact"},
@@ -35,17 +36,18 @@ StabilityFigures measure() {
 }  // namespace
 
 StabilityRow threshold_row() {
-  return {"E2",
-          "Rays of little weight",
-          "two slabs whose surfaces reflect half, rays of weight below 1/255 omitted: error divided by its "
-          "reported bound",
-          "1",
-          "bound of one ray, 1/255, reported for all omitted rays (adaptive tree depth; Hall, Greenberg "
-          "1983)",
-          10,
-          "sum of the weights of all omitted rays",
-          1,
-          measure};
+  return {
+      "E2",
+      "Rays of low weight",
+      "two slabs whose surfaces reflect half of the light, rays of weight below 1/255 omitted: error divided "
+      "by its reported bound",
+      "1",
+      "bound of one ray, 1/255, reported for all omitted rays (adaptive tree depth; Hall, Greenberg "
+      "1983)",
+      10,
+      "sum of the weights of all omitted rays",
+      1,
+      measure};
 }
 
 }  // namespace orrery

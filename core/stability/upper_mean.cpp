@@ -7,8 +7,8 @@
 namespace orrery {
 namespace {
 
-// Measures how often the upper end of a 95 % interval is below the true mean, in %. A run has 256 values, of
-// which one in 2000 is 1 and all others are 0. Most runs see only zeros.
+// Measures how often the upper end of a 95 % interval is below the true mean, in %. A run has 256 values,
+// each 1 with probability 1/2000, otherwise 0. Most runs contain only zeros.
 StabilityFigures measure() {
   constexpr int kRuns = 400, kCount = 256;
   constexpr double kShare = 0.0005, kNormalQuantile = 1.645;
@@ -34,7 +34,8 @@ StabilityFigures measure() {
 StabilityRow upper_mean_row() {
   return {"certificate-26",
           "Confidence interval of a mean",
-          "95 % intervals for the mean of 256 values, one in 2,000 of which is not 0: intervals that miss it",
+          "one-sided 95 % intervals for a mean of 1/2,000, from 256 values of 0 or 1: intervals that miss "
+          "the mean",
           "%",
           "normal distribution (central limit theorem)",
           80,

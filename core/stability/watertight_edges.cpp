@@ -8,7 +8,7 @@
 namespace orrery {
 namespace {
 
-// Measures the percentage of 10,000 rays that leave the closed mesh between its triangles.
+// Measures the percentage of about 10,000 rays that leave the closed mesh between its triangles.
 StabilityFigures measure() {
   constexpr int kRaysAtEach = 9;  // at each of 1106 vertices
   const BallMesh mesh(2, Vec3d());

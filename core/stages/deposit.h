@@ -4,8 +4,8 @@
 
 namespace orrery {
 
-// Adds radiance times throughput of the rays of `groups` to their slots, in the order of the batch. Camera
-// rays set their slots.
+// Adds the radiance of the rays of `groups`, times their throughput, to the sums of their camera rays in
+// batch order. Sums are indexed by PathBatch::slot. Camera rays set their sums instead.
 template <class T>
 void deposit(const PathBatch<T>& paths, const LaneGroups& groups, Vec3Array<T>& radiance,
              Vec3Array<T>& slots) {

@@ -4,25 +4,24 @@
 
 namespace orrery {
 
-// Emitted light that diffuse lobes find, along one sampled direction per surface point. It is weighted
-// against sampled light sources and includes no reflected light. Not thread-safe: each object owns its
-// batches.
+// Emitted light at diffuse lobes, found along one sampled direction per surface point. It is weighted against
+// light sampling and excludes reflected light. Not thread-safe: each object owns its batches.
 template <class T>
 class DiffuseRays {
  public:
-  // Makes the stage. All arguments must outlive it.
+  // All arguments must outlive this object.
   DiffuseRays(const Geometry<T>& geometry, const Accelerator<T>& accelerator, const Plan& plan,
               SampledLight<T>& light)
       : geometry_(geometry), accelerator_(accelerator), plan_(plan), light_(light) {}
 
-  // Adds the light to the radiance of the surface points of `met`.
+  // Adds the reflected light to the radiance of the surfaces of `met`.
   void add(const PathBatch<T>& paths, const HitBatch<T>& hits, const PathDraws<T>& draws,
            const SurfaceBatch<T>& surface, const LaneGroups& met, Vec3Array<T>& radiance,
            TraceCounts& counts);
 
  private:
   using N = Lanes<T>;
-  // Samples directions and makes rays_ of them. Returns the registers with a ray.
+  // Samples directions and fills rays_ with rays along them. Returns the registers with at least one ray.
   LaneGroups draw(const PathBatch<T>& paths, const HitBatch<T>& hits, const PathDraws<T>& draws,
                   const SurfaceBatch<T>& surface, const LaneGroups& met);
 
@@ -33,7 +32,7 @@ class DiffuseRays {
   ScatterBatch<T> drawn_;
   PathBatch<T> rays_;  // each in the lane of its surface point
   HitBatch<T> hits_;
-  SurfaceBatch<T> surface_;  // materials only
+  SurfaceBatch<T> surface_;  // only `material` is filled
   Vec3Array<T> found_;
 };
 

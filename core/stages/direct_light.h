@@ -9,7 +9,7 @@
 
 namespace orrery {
 
-// Direct light from all light sources, sampled one after another. Used by techniques that trace ray trees.
+// Direct light from all light sources, evaluated one after another. Used by techniques that trace ray trees.
 // Not thread-safe: each object owns its batches.
 template <class T>
 class DirectLight {
@@ -18,9 +18,9 @@ class DirectLight {
   DirectLight(const Geometry<T>& geometry, const Accelerator<T>& accelerator, const Plan& plan)
       : geometry_(geometry), plan_(plan), lights_(geometry), shadowed_(geometry, accelerator, plan) {}
 
-  // Sets `radiance` of lanes with lit materials to their reflected ambient light, and adds the light of each
-  // source. `groups` are the registers with such a lane. Checks `checkpoint` before each light and skips the
-  // remaining lights once cancelled.
+  // Sets `radiance` of lanes with lit materials to their reflected ambient light. Adds the reflected light of
+  // each source unless Plan::direct_light is false. `groups` are the registers with a lit material. Checks
+  // `checkpoint` before each light and skips the remaining lights once cancelled.
   void add(const PathBatch<T>& paths, const PathDraws<T>& draws, const SurfaceBatch<T>& surface,
            const LaneGroups& groups, Vec3Array<T>& radiance, TraceCounts& counts,
            const Checkpoint& checkpoint);

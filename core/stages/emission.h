@@ -4,8 +4,8 @@
 
 namespace orrery {
 
-// Returns the emitted radiance of the surfaces of register i, 0 where there is none. REQUIRES: the register's
-// materials are set.
+// Returns the emitted radiance of the surfaces of register i; 0 in lanes that missed or do not emit.
+// REQUIRES: the register's materials are set.
 template <class T>
 Vec3<Lanes<T>> emission_at(const Geometry<T>& geometry, const SurfaceBatch<T>& surface, int i) {
   using N = Lanes<T>;
@@ -24,7 +24,7 @@ Vec3<Lanes<T>> emission_at(const Geometry<T>& geometry, const SurfaceBatch<T>& s
   return radiance;
 }
 
-// Adds the emitted radiance to that of the registers of `met`.
+// Adds the emitted radiance of the surfaces of `met` to `radiance`.
 template <class T>
 void add_emission(const Geometry<T>& geometry, const SurfaceBatch<T>& surface, const LaneGroups& met,
                   Vec3Array<T>& radiance) {

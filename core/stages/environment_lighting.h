@@ -10,13 +10,13 @@ namespace orrery {
 template <class T>
 class LightTree;
 
-// Light from infinite distance, from the environment and from suns, for rays that miss everything. Not
-// thread-safe: each object owns its batches.
+// Light of the environment and of suns, for rays that miss everything. Not thread-safe: each object owns its
+// batches.
 template <class T>
 class EnvironmentLighting {
  public:
-  // Adds a light source. `choice` is one of the kernel's lights and the probability with which it is sampled.
-  // With a tree, the probability is multiplied by that of choosing `number` from the tree. Kernel and tree
+  // Adds a light source. `choice` is one of the kernel's lights and the probability of sampling it. With a
+  // tree, this probability is multiplied by that of selecting light `number` from the tree. Kernel and tree
   // must outlive this object.
   void see(const LightKernel<T>& kernel, const LightChoice<T>& choice, const LightTree<T>* tree = nullptr,
            std::size_t number = 0) {
@@ -25,8 +25,9 @@ class EnvironmentLighting {
 
   bool empty() const { return sources_.empty(); }
 
-  // Adds the light to the radiance of rays of `groups` that missed. `by_lobe` is the density with which each
-  // direction was sampled, or 0 if no light could have been sampled instead. Null means 0 for all rays.
+  // Adds the light to the radiance of the rays of `groups` that missed. `by_lobe` is the density per solid
+  // angle with which each direction was sampled, or 0 if light sampling cannot produce it. The power
+  // heuristic weights only light of positive density. Null means 0 for all rays.
   void add(const RayBatch<T>& rays, const HitBatch<T>& hits, const LaneGroups& groups,
            const Array<T>* by_lobe, Vec3Array<T>& radiance);
 
@@ -38,7 +39,8 @@ class EnvironmentLighting {
     const LightTree<T>* tree;
     std::size_t number;
   };
-  // Multiplies by_light_ by the probability of the choice from the tree, for the lanes that need it.
+  // Multiplies by_light_ by the probability of selecting the source from its tree. Skips lanes whose light is
+  // not weighted.
   void weigh_choice(const Source& source, const RayBatch<T>& rays, const LaneGroups& missed,
                     const Array<T>& by_lobe);
   std::vector<Source> sources_;

@@ -15,7 +15,7 @@ MaskOf<Lanes<T>> lanes_with(const Geometry<T>& geometry, const SurfaceBatch<T>& 
   return lanes;
 }
 
-// Returns the registers of `groups` with such a lane.
+// Returns the registers of `groups` in which lanes_with() is not empty.
 template <class T>
 LaneGroups groups_with(const Geometry<T>& geometry, const SurfaceBatch<T>& surface, const LaneGroups& groups,
                        bool MaterialTraits::*trait) {

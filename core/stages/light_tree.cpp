@@ -28,7 +28,7 @@ Vec3d aligned(const Vec3d& normal, const Vec3d& axis) { return dot(normal, axis)
 struct Extent {
   Boundsd box;
   double energy = 0;
-  Vec3d axis;  // sum of normals
+  Vec3d axis;  // sum of normals, aligned to one side
   int count = 0;
 
   void include(const Extent& other) {
@@ -37,8 +37,9 @@ struct Extent {
     axis = axis + aligned(other.axis, axis);
     count += other.count;
   }
-  // Returns energy times squared size times a factor for the spread of normals: 1 if they are equal, up to 3
-  // otherwise. (The mean of the normals of a uniformly filled cap has length (1 + cosine) / 2.)
+  // Returns energy times squared diagonal times a factor for the spread of the normals, from 1 for equal
+  // normals to 3. The spread is that of a uniformly filled cap, whose mean normal has the length (1 + cosine)
+  // / 2.
   double cost() const {
     if (count == 0) return 0;
     const Vec3d across = box.hi - box.lo;
@@ -69,9 +70,9 @@ class SplitPolicy {
     return all;
   }
 
-  // Reorders the lights into two parts and returns the size of the first. Lights at infinite distance are
-  // separated from the rest. Otherwise bins along an axis define planes, and the plane with the least cost of
-  // both sides is chosen. REQUIRES: at least two lights.
+  // Reorders the lights into two parts and returns the size of the first. Lights at infinite distance come
+  // first and form a part. Other lights are split at the plane between bins along an axis that has the lowest
+  // total cost of both parts. Without a plane, the halves are equal. REQUIRES: at least two lights.
   std::size_t split(Numbers numbers) const {
     const auto parallel = [this](std::int32_t n) { return lights_[static_cast<std::size_t>(n)].parallel; };
     const auto near = std::stable_partition(numbers.begin(), numbers.end(), parallel);
@@ -133,7 +134,8 @@ struct LightTree<T>::Builder {
   std::span<const LightBounds> lights;
   SplitPolicy split_policy{lights};
 
-  // From this level on, lights are split by number, so that 16 levels of 4 bits hold any tree.
+  // From this level on, groups are split into halves of equal count, so that any tree has at most 16 levels.
+  // A path stores 4 bits per level.
   static constexpr int kLevels = 8;
 
   struct Group {
@@ -141,11 +143,11 @@ struct LightTree<T>::Builder {
     double cost;
   };
 
-  // Merges lights into one of average properties, never closer than the radius of their bounding sphere.
-  // Harmonic means of the attenuation coefficients preserve the sum that is received far away.
+  // Merges lights into a cluster. Its attenuation is never below that at the radius of its bounding sphere.
+  // Harmonic means of the attenuation coefficients preserve the total light that arrives far away.
   LightCluster<double> cluster(Numbers numbers) const {
     Boundsd box;
-    Vec3d axis, reach;  // reach: sums of strength over each coefficient
+    Vec3d axis, reach;  // reach: sums of strength / coefficient
     LightCluster<double> all{};
     for (const std::int32_t n : numbers) {
       const LightBounds& light = lights[static_cast<std::size_t>(n)];
@@ -225,7 +227,8 @@ struct LightTree<T>::Descent {
   double u = 0;
   double probability = 1;
 
-  // Returns the target of the member chosen by u, and rescales u. Since u < 1, u * sum < sum.
+  // Returns the target of the member selected by u, and rescales u. The loop ends at a member because u < 1
+  // implies u * sum < sum.
   std::int32_t step(const Node& node, const Weights& weights, double sum) {
     constexpr double kBelowOne = 1 - std::numeric_limits<double>::epsilon() / 2;
     const double wanted = u * sum;
@@ -256,7 +259,7 @@ double LightTree<T>::sum_of(const Node& node, Weights& weights) {
   return static_cast<double>(node.count);
 }
 
-// Computes with members as lanes.
+// Evaluates one point, with members as lanes.
 template <class T>
 double LightTree<T>::weigh(const Node& node, const Vec3<T>& position, Weights& weights) {
   using N = Lanes<T>;
@@ -271,7 +274,7 @@ double LightTree<T>::weigh(const Node& node, const Vec3<T>& position, Weights& w
   return sum_of(node, weights);
 }
 
-// Computes the root with points as lanes, since all points weigh the same members.
+// Evaluates the root with points as lanes, since all points weigh the same members.
 template <class T>
 typename LightTree<T>::Choices LightTree<T>::choose(const Vec3<Lanes<T>>& positions,
                                                     const std::array<double, kPoints>& u) const {
@@ -289,7 +292,7 @@ typename LightTree<T>::Choices LightTree<T>::choose(const Vec3<Lanes<T>>& positi
   std::array<Descent, kPoints> descents;
   std::array<std::int32_t, kPoints> targets;
   Weights weights;
-  // Prefetches the next node while the other points take their steps.
+  // Moves a point one level down. Prefetches its next node, which loads while the other points move.
   const auto step = [&](std::size_t point, const Node& node, double sum) {
     const std::int32_t target = targets[point] = descents[point].step(node, weights, sum);
     if (target >= 0) return prefetch_lines(nodes_[static_cast<std::size_t>(target)]);

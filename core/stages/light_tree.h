@@ -11,15 +11,17 @@
 
 namespace orrery {
 
-// Light or cluster of lights with the data of its importance, see LightBounds.
+// Light or cluster of lights, with the values that determine its importance; see LightBounds.
 template <class N>
 struct LightCluster {
   Vec3<N> centre, axis;
-  N radius, spread;  // sine of the largest angle between normals and axis, of either sign; 1: any angle
+  N radius;
+  N spread;  // sine of the largest angle between the axis and a normal or its opposite; 1: any angle
   N strength, c0, c1, c2;
 
-  // Returns an estimate of the received light: strength over attenuation, times a bound on the cosine at the
-  // cluster. The sines of the cone of normals and of the bounding sphere are added to the cosine of the axis.
+  // Returns an estimate of the light received at `position`: strength over attenuation, times an upper bound
+  // of the cosine at the lights. The bound is the cosine to the axis plus two sines: that of the spread of
+  // normals, and that of the angular radius of the bounding sphere.
   N importance(const Vec3<N>& position) const {
     using std::abs;
     using T = ScalarOf<N>;
@@ -31,10 +33,10 @@ struct LightCluster {
   }
 };
 
-// Samples a light for a point, roughly in proportion to the light that reaches its position. A node has up to
-// 16 members, lights or clusters with a node of their own. Up to 16 lights are weighed individually (Conty
-// and Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", HPG 2018). Built in double
-// precision, with ties in the order of the lights. Const and thread-safe.
+// Selects a light for a point, with a probability roughly proportional to the light received there. A node
+// has up to 16 members: lights, or clusters with child nodes. Up to 16 lights therefore have individual
+// weights (Conty and Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", HPG 2018).
+// Built in double precision; ties keep the order of the lights. Immutable and thread-safe.
 template <class T>
 class LightTree {
  public:
@@ -50,9 +52,10 @@ class LightTree {
     std::array<std::size_t, kPoints> light;
     std::array<T, kPoints> probability;
   };
-  // Chooses a light for each point of a register by random numbers u in [0, 1).
+  // Selects a light for each position of a register by random numbers u in [0, 1).
   Choices choose(const Vec3<Lanes<T>>& positions, const std::array<double, kPoints>& u) const;
-  // Returns the probability with which choose() takes a light at a point, bit for bit.
+  // Returns the probability with which choose() selects a light at a position. Equals Choices::probability
+  // bit for bit.
   T probability(const Vec3<T>& position, std::size_t light) const;
 
  private:
@@ -71,7 +74,7 @@ class LightTree {
   static double sum_of(const Node& node, Weights& weights);
 
   std::vector<Node> nodes_;             // root first
-  std::vector<std::uint64_t> path_of_;  // by light: its member in each node, 4 bits per level, root lowest
+  std::vector<std::uint64_t> path_of_;  // by light: member in each node, 4 bits per level, root lowest
 };
 
 extern template class LightTree<float>;

@@ -29,8 +29,8 @@ struct Activations {
   }
 };
 
-// Backpropagates through the layer at `row`: adds its gradient to `slope` and sets the gradient of its
-// inputs. An input of 0 was clipped and has gradient 0.
+// Backpropagates through the layer at `row`: adds the gradient of its weights to `slope` and sets the
+// gradient of its inputs. An input of 0 was clipped by ReLU, so its gradient is 0.
 template <std::size_t kIn, std::size_t kOut>
 void add_slope(const float* row, const std::array<float, kIn>& in, const std::array<float, kOut>& of_out,
                float* slope, std::array<float, kIn>* of_in) {

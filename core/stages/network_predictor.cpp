@@ -9,10 +9,10 @@
 namespace orrery {
 namespace {
 
-constexpr int kNoOccluder = 0;  // answer for rays without a candidate in their way
+constexpr int kNoOccluder = 0;  // answer for rays that no candidate occludes
 
-// Returns the primitives that occlude the most samples, in descending order. Ties are sorted by primitive
-// number.
+// Returns up to 15 primitives that occlude the most samples, in descending order. Ties are sorted by
+// primitive number.
 std::vector<int> candidates_of(std::span<const OcclusionSample> samples) {
   std::map<int, int> met;
   for (const OcclusionSample& sample : samples)
@@ -35,8 +35,8 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-// Normalization of one coordinate of the ray origins. Half of the samples map to -1/2 to 1/2, and all to
-// between -1 and 1. Distant origins therefore do not compress the near ones.
+// Normalization of one coordinate of the ray origins to (-1, 1). Half of the samples get at most 1/2 in
+// magnitude, so that distant origins do not compress the near ones.
 struct CoordinateNormalization {
   double middle = 0, scale = 0;
 
@@ -91,8 +91,8 @@ class NetworkPredictor final : public Predictor<T> {
     network_ = train_network(examples);
   }
 
-  // Proposes the candidate with the best score if it exceeds the score of kNoOccluder less kProposalMargin.
-  // NaN scores propose nothing.
+  // Proposes the candidate with the best score if this score exceeds that of kNoOccluder minus
+  // kProposalMargin. NaN scores propose nothing.
   void propose(const RayBatch<T>& rays, const LaneGroups& groups,
                Array<IndexOf<T>>& primitive) const override {
     for (const int i : groups) {

@@ -10,8 +10,8 @@
 namespace orrery {
 namespace {
 
-// Sorts slots by key, then by slot. Slots go into buckets by the highest bits of their keys. Keys are random,
-// so insertion sort then moves hardly any slot.
+// Returns the indices of `keys`, sorted by key and then by index, in the low 32 bits of the elements. The
+// highest bits of a key select its bucket. Keys are random, so insertion sort then moves few elements.
 std::array<std::uint64_t, kBatch> in_order(const std::array<std::uint32_t, kBatch>& keys) {
   constexpr int kLowBits = 32 - std::countr_zero(static_cast<unsigned>(kBatch));
   std::array<std::uint16_t, kBatch + 1> begins{};
@@ -25,7 +25,7 @@ std::array<std::uint64_t, kBatch> in_order(const std::array<std::uint32_t, kBatc
   return order;
 }
 
-// Gathers the records of all lanes.
+// Returns records[index[i + lane]] in each lane.
 template <template <class> class Record, class T>
 Record<Lanes<T>> records_at(const std::vector<Record<T>>& records, const Array<IndexOf<T>>& index, int i) {
   return gather_records<Record, T>(records, load_index<T>(index, i), MaskOf<Lanes<T>>(true), 0);
@@ -48,7 +48,7 @@ void PathReuse<T>::begin(const Draws& draws) {
   std::array<std::uint32_t, kBatch> keys;
   draws.shuffle_keys(keys);
   const std::array<std::uint64_t, kBatch> order = in_order(keys);
-  const auto slot_at = [&](int place) {  // consecutive slots form a group
+  const auto slot_at = [&](int place) {  // consecutive places form a group
     return static_cast<std::uint32_t>(order[static_cast<std::size_t>(place)]);
   };
   for (int first = 0; first < kBatch; first += group_)
@@ -87,13 +87,13 @@ void PathReuse<T>::keep_second(int i, const PathBatch<T>& paths, const SurfaceBa
   for (unsigned bits = bits_of(shared); bits != 0; bits &= bits - 1) {
     const int lane = i + std::countr_zero(bits);
     const int slot = static_cast<int>(paths.slot[lane]);
-    if (!(pdf_[slot] > 0)) continue;  // found through a mirror, so the other paths have no density
+    if (!(pdf_[slot] > 0)) continue;  // specular direction: other paths cannot sample it
     second_[static_cast<std::size_t>(slot)] = {surface.position[lane], surface.geometric[lane],
                                                surface.step[lane], 1};
   }
 }
 
-// Connects each slot to its own second vertex, which is visible by construction.
+// Connects each first vertex to the second vertex of its own path, which is visible by construction.
 template <class T>
 void PathReuse<T>::connect_own(Connections& own) {
   const N zero(T(0));
@@ -111,7 +111,7 @@ void PathReuse<T>::connect_own(Connections& own) {
 }
 
 // Makes shadow rays from first vertices to the second vertices of their partners. The rays end early by the
-// rounding error of both vertices. First vertices whose own sample failed or went through a mirror take part,
+// rounding error of both vertices. First vertices whose own sample failed or was specular are included,
 // because their densities enter the weights.
 template <class T>
 void PathReuse<T>::aim(int turn) {
@@ -141,7 +141,7 @@ void PathReuse<T>::connect(int turn, Connections& to, TraceCounts& counts) {
   for (const int i : connected) {
     const N t = shadow_.t_max.at(i);
     const N cosine = -dot(shadow_.direction.at(i), toward_normal_.at(i));
-    // Sampled paths continue under the same condition.
+    // Same condition as for sampled paths in continue_path().
     const auto possible =
         t > zero && lobe_pdf_.at(i) > zero && cosine > zero && max_component(f_cos_.at(i)) > zero;
     const N change = select(possible, N(cosine / (t * t)), zero);  // converts solid angle to area
@@ -156,7 +156,7 @@ void PathReuse<T>::connect(int turn, Connections& to, TraceCounts& counts) {
   for (const int i : connected) to.density.put(i, !(shadow_.t_max.at(i) > zero), zero);
 }
 
-// Sums the densities of each second vertex over all paths that could have sampled it.
+// Sums the densities of each second vertex over all paths of its group that could have sampled it.
 template <class T>
 void PathReuse<T>::find_arrivals() {
   for (const int i : kept_) {
@@ -181,7 +181,7 @@ Vec3<Lanes<T>> PathReuse<T>::received(int i) const {
     const Connections& to = connections_[turn];
     const Arrival<N> arrival = records_at<Arrival, T>(arrivals_, partners_[turn], i);
     const auto drawn = arrival.inverse_density > zero;
-    if (turn == 0) sum = select(drawn, sum, weight_.at(i) * arrival.suffix);  // no path has a density for it
+    if (turn == 0) sum = select(drawn, sum, weight_.at(i) * arrival.suffix);  // no density: own path only
     const auto connected = drawn && to.density.at(i) > zero;
     sum = sum + select(connected, to.share.at(i) * arrival.suffix * arrival.inverse_density, Vec3<N>(zero));
   }

@@ -18,16 +18,16 @@ struct SecondVertex {
   N shared;  // 1, or 0 if no path may connect to it
 };
 
-// Light received by a second vertex, and one over the density with which its group samples it, or 0 if no
-// path can.
+// Radiance reflected by a second vertex, and the inverse of the density with which its group samples the
+// vertex. The inverse is 0 if only its own path can reach the vertex.
 template <class N>
 struct Arrival {
   Vec3<N> suffix;
   N inverse_density;
 };
 
-// Path reuse within a tile. Each first vertex is connected to the second vertices of a random group of paths,
-// which changes with each sample. Contributions are weighted with the densities of the whole group (Bekaert,
+// Path reuse within a tile. Each first vertex is connected to the second vertices of a random group of paths.
+// Groups change with each sample. Contributions are weighted with the densities of the whole group (Bekaert,
 // Sbert, Halton, "Accelerating Path Tracing by Re-Using Paths", EGWR 2002). The balance heuristic and traced
 // visibility keep the result unbiased. Not thread-safe: each object owns its batches.
 template <class T>
@@ -39,32 +39,33 @@ class PathReuse {
   // Starts a batch of camera rays.
   void begin(const Draws& draws);
 
-  // Stores the first vertices of register i, whose slots are their places in the batch, with weight and
-  // density of the sampled direction. `drawn`: lanes whose direction other paths could sample. `alive`: lanes
-  // whose path continues, with a throughput of 1 from there. `lit`: lanes that others may connect to, even if
-  // their own sample failed.
+  // Stores the first vertices of register i, with weight and density of the sampled direction. REQUIRES:
+  // `paths` are the camera rays. `drawn`: lanes whose direction other paths can sample. `alive`: lanes whose
+  // path continues, with a throughput of 1 after the vertex. `lit`: lanes that may connect to second vertices
+  // of other paths, even if their own sample failed.
   void keep_first(int i, const PathBatch<T>& paths, const SurfaceBatch<T>& surface,
                   const ScatterBatch<T>& scatter, const MaskOf<Lanes<T>>& alive,
                   const MaskOf<Lanes<T>>& drawn, const MaskOf<Lanes<T>>& lit);
-  // Stores the second vertices of register i whose reflected light is the same in all directions.
+  // Stores the second vertices of register i for the lanes `shared`, whose reflected light is the same in all
+  // directions.
   void keep_second(int i, const PathBatch<T>& paths, const SurfaceBatch<T>& surface,
                    const MaskOf<Lanes<T>>& shared);
 
-  // Returns the light that reaches the second vertices, summed by slot, for throughputs that start at 1
-  // there.
+  // Returns sums of the radiance that second vertices reflect to first vertices, by camera ray. Throughputs
+  // of these sums are 1 at the second vertex.
   Vec3Array<T>& suffixes() { return suffix_; }
-  // Returns the weight of the first direction of each slot.
+  // Returns the weight of the direction sampled at the first vertex, by camera ray.
   const Vec3Array<T>& weights() const { return weight_; }
 
-  // Adds the light that first vertices receive from second vertices to the radiance of the slots. Returns
+  // Adds the light that first vertices reflect from second vertices to `radiance`, by camera ray. Returns
   // false if cancelled.
   bool finish(Vec3Array<T>& radiance, TraceCounts& counts, const Checkpoint& checkpoint);
 
  private:
   using N = Lanes<T>;
   struct Connections {
-    Array<T> density;    // area density of the partner's second vertex
-    Vec3Array<T> share;  // fraction of its light that reaches the slot, per area
+    Array<T> density;    // per area, with which this first vertex samples the partner's second vertex
+    Vec3Array<T> share;  // contribution of that vertex's radiance to the camera ray, per area
   };
   void connect_own(Connections& own);
   void connect(int turn, Connections& to, TraceCounts& counts);
@@ -77,16 +78,16 @@ class PathReuse {
   const int group_;
   const LaneGroups all_ = LaneGroups::covering(0, kBatch, kWidth<T>);
   LaneGroups kept_;  // registers with first vertices
-  // Partner of each slot in its group, by turn. At turn 0 a slot is its own partner.
+  // Partner of each camera ray in its group, by turn. At turn 0 each is its own partner.
   std::vector<Array<IndexOf<T>>> partners_;
-  // First vertices by slot.
+  // First vertices by camera ray.
   SurfaceBatch<T> first_;
   Vec3Array<T> ray_, weight_;
   Array<T> pdf_;                         // 0: other paths cannot sample the direction
   Array<T> lit_;                         // 1 or 0
-  std::vector<SecondVertex<T>> second_;  // by slot
+  std::vector<SecondVertex<T>> second_;  // by camera ray
   Vec3Array<T> suffix_;
-  std::vector<Arrival<T>> arrivals_;  // by slot
+  std::vector<Arrival<T>> arrivals_;  // by camera ray
   // Temporaries of one turn.
   Vec3Array<T> toward_normal_, f_cos_;
   Array<T> lobe_pdf_;

@@ -43,7 +43,8 @@ class OccluderVerifier {
     counts_.verified_occluders += open - active_rays(rays_, one);
   }
 
-  // Tests the primitives proposed for rays of register `i`, while any of these rays is active.
+  // Tests each distinct primitive that is proposed for an active ray of register `i` against the whole
+  // register.
   void attempt_each(const Array<IndexOf<T>>& primitive, int i) {
     const IndexLanes<T> proposed = load_index<T>(primitive, i);
     for (unsigned open = active(i); open != 0; open &= active(i)) {
@@ -61,8 +62,8 @@ class OccluderVerifier {
   AcceleratorCounts& counts_;
 };
 
-// Base class that leaves the nearest hit to the accelerator. Even a free and correct prediction of it saves a
-// tenth at best (`script/bench prediction`).
+// Base class that passes closest() to the accelerator `behind_`. Even a free and correct prediction of the
+// nearest hit saves at most a tenth of the time (`script/bench prediction`).
 template <class T>
 class Predicted : public Accelerator<T> {
  public:
@@ -101,8 +102,8 @@ class PredictorAccelerator final : public Predicted<T> {
   PredictorPtr<T> predictor_;
 };
 
-// Shadow rays do not return their occluder. Therefore closest() is traced for one ray of each lot with an
-// occluded ray.
+// occlude() does not return the occluder. closest() is therefore traced for one ray of each lot in which a
+// ray was occluded.
 template <class T>
 class LastOccluderCache final : public Predicted<T> {
  public:

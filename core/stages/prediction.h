@@ -3,9 +3,9 @@
 #include "core/model/accelerator.h"
 
 // Prediction of occluders, in front of any accelerator. The kernel of a proposed primitive tests it against
-// the shadow ray. If they intersect, the ray is occluded and the accelerator is skipped. A prediction of no
-// occluder is never trusted. So results are exact for any prediction, and only the time changes (the check of
-// Liu et al., "Intersection Prediction for Accelerated GPU Ray Tracing", MICRO 2021).
+// the shadow ray. If they intersect, the ray is occluded and the accelerator is skipped. Otherwise the
+// accelerator traces the ray. Results are therefore exact for any prediction, and only the time changes (the
+// check of Liu et al., "Intersection Prediction for Accelerated GPU Ray Tracing", MICRO 2021).
 namespace orrery {
 
 // Proposes occluders. Const, stateless and thread-safe.
@@ -14,26 +14,28 @@ class Predictor {
  public:
   virtual ~Predictor() = default;
 
-  // Sets the proposed occluder of each ray of `groups`: any number, or kNoPrimitive for none.
+  // Sets the proposed occluder of each ray of `groups`, or kNoPrimitive. Numbers that are out of range are
+  // ignored.
   virtual void propose(const RayBatch<T>& rays, const LaneGroups& groups,
                        Array<IndexOf<T>>& primitive) const = 0;
 };
 template <class T>
 using PredictorPtr = std::shared_ptr<const Predictor<T>>;
 
-// Returns a predictor for comparison: one of `count` primitives per register, chosen by the bits of its first
-// ray.
+// Returns a predictor for comparisons. It proposes one of `count` primitives per register, selected by a hash
+// of the register's first ray.
 template <class T>
 PredictorPtr<T> random_predictor(int count);
 
-// Returns an accelerator that calls `behind` only for rays that `predictor` could not prove occluded. The
-// primitives must outlive it.
+// Returns an accelerator whose occlude() calls `behind` only for rays that `predictor` could not prove
+// occluded. `primitives` must outlive it.
 template <class T>
 std::shared_ptr<const Accelerator<T>> predicted(const PrimitiveList<T>& primitives,
                                                 std::shared_ptr<const Accelerator<T>> behind,
                                                 PredictorPtr<T> predictor);
 
-// Returns an accelerator that proposes the last occluder found in the same call. It keeps no other state.
+// Returns an accelerator that proposes the last occluder found in the same call of occlude(). It keeps no
+// state between calls. `primitives` must outlive it.
 template <class T>
 std::shared_ptr<const Accelerator<T>> predicted_by_last(const PrimitiveList<T>& primitives,
                                                         std::shared_ptr<const Accelerator<T>> behind);

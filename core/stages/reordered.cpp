@@ -12,7 +12,8 @@ static_assert(kDigits * kDigitBits == 6 * kCellBits);
 
 using Keys = std::array<std::uint32_t, kBatch>;
 
-// Returns (x - lo) * scale, clamped to the cells. min_first and max_first drop a NaN, so any x has a cell.
+// Returns (x - lo) * scale, clamped to [0, kCells - 1]. min_first and max_first ignore NaN, so any x has a
+// cell.
 template <class N>
 auto cell_of(const N& x, const N& lo, const N& scale) {
   const N cell = min_first(N(kCells - 1), max_first(N(0), N((x - lo) * scale)));
@@ -50,7 +51,7 @@ struct Extent {
   }
 };
 
-// Writes the keys of the active rays and returns their places.
+// Writes the sort keys of the active rays and returns their places in the batch, unsorted.
 template <class T>
 RayOrder keys_of(const RayBatch<T>& rays, const LaneGroups& groups, Keys& keys) {
   using N = Lanes<T>;
@@ -140,7 +141,7 @@ class RaySortingAccelerator final : public Accelerator<T> {
  private:
   static int place_of(const RayOrder& order, int i) { return order.place[static_cast<std::size_t>(i)]; }
 
-  // Copies the rays in that order and fills the last register with inactive rays. Returns the registers.
+  // Copies the rays in `order` and fills the last register with inactive rays. Returns the registers.
   LaneGroups gather(const RayBatch<T>& rays, const RayOrder& order, RayBatch<T>& sorted) const {
     sorted.count = order.count;
     const LaneGroups all = LaneGroups::covering(0, order.count, kWidth<T>);

@@ -9,8 +9,8 @@
 namespace orrery {
 namespace {
 
-// Returns whether rays may hit light that is not sampled: an environment, a background or surfaces.
-// (Environment maps are sampled only where they are bright.)
+// Returns whether rays may hit light that is not sampled: an environment, a background or emitting surfaces.
+// Environment maps are sampled only in bright regions.
 template <class T>
 bool has_unsampled_light(const Geometry<T>& geometry) {
   return geometry.environment || geometry.background != Vec3<T>() || geometry.emits_undrawn;
@@ -62,7 +62,8 @@ void SampledLight<T>::add_sources() {
   if (environment_) add(geometry_.environment.get()).back() = 0;
 }
 
-// The second random number refines the first one, because a light among many has a small probability.
+// Adds the second random number to the low bits of the first, because a light among many has a small
+// probability.
 template <class T>
 void SampledLight<T>::choose(const PathDraws<T>& draws, const SurfaceBatch<T>& surface,
                              const LaneGroups& groups) {

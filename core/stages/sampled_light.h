@@ -10,13 +10,13 @@ namespace orrery {
 template <class T>
 class SampledLight {
  public:
-  // `drawn` are the lobes whose sampled rays may hit light as well: all, or all but the diffuse ones. The
-  // light of other lobes is weighted against their own rays, if there are any. Geometry, accelerator and plan
-  // must outlive this object.
+  // `drawn`: lobes whose sampled rays may hit light as well. They are all lobes, or all except the diffuse
+  // ones. Light on the diffuse ones is then weighted against DiffuseRays, if these are traced. Geometry,
+  // accelerator and plan must outlive this object.
   SampledLight(const Geometry<T>& geometry, const Accelerator<T>& accelerator, const Plan& plan, Lobes drawn);
 
-  // Returns whether diffuse lobes must sample directions of their own. True if they are not in `drawn` and
-  // some light is not sampled, at least in part.
+  // Returns whether diffuse lobes need DiffuseRays: they are not in `drawn`, and light sampling misses some
+  // light.
   bool wants_diffuse_rays() const { return wants_diffuse_rays_; }
 
   // Adds the light of one sampled source per surface point to its radiance. `groups` are the registers with a
@@ -29,12 +29,12 @@ class SampledLight {
   void add_emission(const PathBatch<T>& paths, const HitBatch<T>& hits, const SurfaceBatch<T>& surface,
                     const LaneGroups& met, Vec3Array<T>& radiance);
 
-  // Adds the light that rays find which missed, weighted in the same way.
+  // Adds the environment light to rays that missed, with the same weights.
   void add_environment(const PathBatch<T>& paths, const HitBatch<T>& hits, const LaneGroups& groups,
                        Vec3Array<T>& radiance) {
     environment_lighting_.add(paths.rays, hits, groups, paths.depth > 0 ? &paths.pdf : nullptr, radiance);
   }
-  // Returns the unweighted environment light, for camera rays.
+  // Returns the environment light, for camera rays, which need no weights.
   EnvironmentLighting<T>& beyond() { return environment_lighting_; }
 
  private:
@@ -42,20 +42,20 @@ class SampledLight {
   // Lights of one kernel: a set, the emitters, or the environment.
   struct Source {
     const LightKernel<T>* kernel;
-    std::vector<IndexOf<T>> index;  // index in the kernel by light number; -1: another kernel
+    std::vector<IndexOf<T>> index;  // index in the kernel, by light number; -1: not its light
   };
   void add_sources();
   void choose(const PathDraws<T>& draws, const SurfaceBatch<T>& surface, const LaneGroups& groups);
-  // Sets choices_ to the emitters hit by the lanes of `emits` in register i.
+  // Sets choices_ to the emitters hit in the lanes `emits` of register i, with their selection probabilities.
   void note_emitters(const RayBatch<T>& rays, const HitBatch<T>& hits, int i, const MaskOf<N>& emits);
 
   const Geometry<T>& geometry_;
   std::vector<Source> sources_;
-  // Lights are numbered: scene lights, emitters, and the environment if it is sampled.
-  const LightTree<T>* tree_;  // all lights but the environment; null: no others
+  // Light numbers: scene lights, then emitters, then the environment if it is sampled.
+  const LightTree<T>* tree_;  // all lights except the environment; null if there are none
   std::size_t count_, first_emitter_;
-  bool environment_;  // chosen separately: always without other lights, else half of the time
-  T share_;           // probability to choose the environment, and to choose the others
+  bool environment_;  // is sampled: with probability 1/2, or 1 without other lights
+  T share_;           // probability of the environment; also that of the tree
   bool apart_;        // diffuse lobes are not in `drawn`
   bool wants_diffuse_rays_;
   EnvironmentLighting<T> environment_lighting_;

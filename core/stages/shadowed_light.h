@@ -7,8 +7,8 @@
 
 namespace orrery {
 
-// Light from light sources at surfaces: evaluates the materials for `light`, which the caller fills, and
-// traces shadow rays. Not thread-safe: each object owns its batches. Objects on several threads may share the
+// Reflected light of light sources. The caller fills `light`; find() evaluates the materials and traces
+// shadow rays. Not thread-safe: each object owns its batches. Objects on several threads may share the
 // geometry, accelerator and plan.
 template <class T>
 class ShadowedLight {
@@ -19,13 +19,13 @@ class ShadowedLight {
       : geometry_(geometry), accelerator_(accelerator), plan_(plan), apart_(apart) {}
 
   // Evaluates the materials of `groups` and traces shadow rays for lanes that reflect light. Returns the
-  // registers with such a lane. light.shadow.t_max is positive if the light is visible. constant_half: see
-  // Directions.
+  // registers with such lanes. Afterwards light.shadow.t_max is positive in lanes whose light is reflected
+  // and not occluded. constant_half: see Directions.
   LaneGroups find(const PathBatch<T>& paths, const SurfaceBatch<T>& surface, const LaneGroups& groups,
                   bool constant_half, TraceCounts& counts);
 
   LightBatch<T> light;
-  // Results of MaterialKernel::evaluate(). Undefined outside the registers returned.
+  // Results of MaterialKernel::evaluate(). Undefined outside the registers that find() returned.
   Vec3Array<T> pi_bsdf_cos;
   Array<T> pdf;
   // Results for diffuse lobes if `apart`; pi_bsdf_cos and pdf are then those of all other lobes.
@@ -33,7 +33,7 @@ class ShadowedLight {
   Array<T> diffuse_pdf;
 
  private:
-  // Sets `diffuse`, and clears pi_bsdf_cos of lanes where only diffuse lobes reflect.
+  // Evaluates the diffuse lobes. Sets `diffuse` and pi_bsdf_cos to 0 in lanes whose density is 0.
   void evaluate_diffuse(const Directions<T>& directions, const SurfaceBatch<T>& surface,
                         const LaneGroups& groups);
   const Geometry<T>& geometry_;
@@ -42,8 +42,8 @@ class ShadowedLight {
   bool apart_;
 };
 
-// Sets pi_bsdf_cos and pdf of all lanes of `groups` for these lobes of their materials. pdf is 0 if a
-// material is not lit.
+// Sets pi_bsdf_cos and pdf of the lanes of `groups` for these lobes of their materials. If a material is not
+// lit or lacks the lobes, pdf is 0 and pi_bsdf_cos is unchanged.
 template <class T>
 void evaluate_materials(const Geometry<T>& geometry, const Directions<T>& directions,
                         const SurfaceBatch<T>& surface, const LaneGroups& groups, Lobes lobes,

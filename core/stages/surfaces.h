@@ -5,7 +5,7 @@
 
 namespace orrery {
 
-// Sets the hits of `groups` to none, at the end of their rays.
+// Sets the hits of `groups` to kNoPrimitive at t_max.
 template <class T>
 void reset(const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits) {
   for (const int i : groups) {
@@ -14,7 +14,8 @@ void reset(const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits)
   }
 }
 
-// Sets the materials of register i, or -1 for rays that missed. (Neighbours mostly hit the same primitive.)
+// Sets the materials of register i, or -1 for rays that missed. Fast if all rays hit the same primitive, as
+// neighbours mostly do.
 template <class T>
 void find_materials(const Geometry<T>& geometry, const HitBatch<T>& hits, int i, SurfaceBatch<T>& surface) {
   const auto material = [&](IndexOf<T> p) {

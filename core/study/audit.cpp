@@ -16,7 +16,7 @@ namespace orrery {
 namespace {
 
 constexpr int kSamplesOfMiddle = 64;  // instead of a single centred sample
-constexpr double kMinWeight = 1e-4;   // min_contribution of ray trees without cuts
+constexpr double kMinWeight = 1e-4;   // maximum min_contribution of full ray trees
 
 // Returns the numbers of `count` random pixels. Pixels are numbered row by row.
 std::vector<std::int64_t> draw_pixels(const Plan& plan, int count, std::uint64_t seed) {
@@ -28,7 +28,7 @@ std::vector<std::int64_t> draw_pixels(const Plan& plan, int count, std::uint64_t
   return drawn;
 }
 
-// Returns a tile of one pixel for each distinct pixel.
+// Returns one tile of a single pixel for each distinct pixel.
 std::vector<TileView> tiles_of(std::vector<std::int64_t> pixels, int width, int samples) {
   std::sort(pixels.begin(), pixels.end());
   pixels.erase(std::unique(pixels.begin(), pixels.end()), pixels.end());

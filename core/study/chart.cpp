@@ -18,7 +18,7 @@ std::vector<double> values_of(const Point& point, const Value& value) {
 double rmse_of(const Measurement& s) { return s.difference.rmse; }
 double cpu_ms_of(const Measurement& s) { return s.cpu_ms; }
 
-// Returns the interval of the mean of values that are never negative.
+// Returns the confidence interval of the mean of non-negative values, clipped at 0.
 std::optional<Interval> interval_of(const std::vector<double>& values) {
   auto interval = mean_interval(values);
   if (interval) interval->low = std::max(0.0, interval->low);
@@ -83,8 +83,8 @@ double Chart::full_seconds(double cpu_ms) const {
 
 namespace {
 
-// Returns the interval of the mean of difference(a, b) over the rounds that both points have. With one common
-// round, returns its difference.
+// Returns the confidence interval of the mean of difference(a, b) over the common rounds of both points. With
+// one common round, both ends are its difference.
 template <class Difference>
 Interval compared(const Point& a, const Point& b, const Difference& difference) {
   std::vector<double> values;
@@ -98,7 +98,7 @@ Interval extra_ms(const Point& point, const Point& other) {
                   [](const Measurement& a, const Measurement& b) { return a.cpu_ms - b.cpu_ms; });
 }
 
-// Compares errors. The result is below 0 if `point` is more accurate.
+// Compares errors. The result is below 0 if the error of `point` is more than 1 % smaller.
 Interval extra_rmse(const Point& point, const Point& other, double floor) {
   constexpr double kNearer = 0.99;
   return compared(point, other, [&](const Measurement& a, const Measurement& b) {
@@ -110,8 +110,8 @@ bool is_dominated(const Point& point, const Point& other, double floor) {
   return extra_ms(point, other).low > 0 && extra_rmse(point, other, floor).low >= 0;
 }
 
-// Returns whether `point` is worse than `other` in both means, beyond their intervals. Decides even if the
-// points have too few common rounds.
+// Returns whether `point` is slower and less accurate than `other`, with intervals that do not overlap. Also
+// works for points with too few common rounds.
 bool is_apart(const Point& point, const Point& other) {
   const auto beyond = [](const std::optional<Interval>& worse, const std::optional<Interval>& better) {
     return worse && better && worse->low > better->high;

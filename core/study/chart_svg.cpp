@@ -11,7 +11,7 @@ constexpr double kChartWidth = 860, kChartHeight = 520, kLeft = 84, kRight = 620
                  kZeroLane = 30;
 constexpr const char* kBelowFloor = "#999999";
 
-// Cuts a text that does not fit into one line.
+// Truncates a text that does not fit on one line.
 std::string shortened(const std::string& text) {
   constexpr std::size_t kFits = 70;
   std::size_t characters = 0;
@@ -124,7 +124,7 @@ class Drawing {
       text_ += svg_text(x + 8, y - 7, std::to_string(p.configuration.samples), "font-size=\"11\"");
   }
 
-  // Draws a mark: filled on the front, half filled if undecided.
+  // Draws a mark: filled on the front, half filled if undecided, else empty.
   static std::string mark(double x, double y, bool square, ParetoStatus pareto_status, const char* color,
                           const std::string& told) {
     const std::string style = printed("fill=\"%s\" stroke=\"%s\" stroke-width=\"2\"",
@@ -178,7 +178,7 @@ class Drawing {
   const Chart& chart_;
   const double cheapest_ms_;
   Axis x_{}, y_{};         // y_ has no ticks if all errors are 0
-  bool has_zero_ = false;  // draws zeros in a lane below the axis
+  bool has_zero_ = false;  // errors of 0 are drawn in a lane below the axis
   std::string text_;
 };
 

@@ -5,18 +5,18 @@
 
 namespace orrery {
 
-// Error of a picture x relative to a reference r, over all channels of linear colour. d = x - r.
+// Error of an image x relative to a reference r, over all channels of linear colour. d = x - r.
 struct Difference {
   double rmse = 0;               // sqrt(mean d^2)
-  double relative_mse = 0;       // mean of d^2 / (r + 0.01)^2, which weighs bright places less
+  double relative_mse = 0;       // mean of d^2 / (r + 0.01)^2, with less weight for bright pixels
   double mean_absolute = 0;      // mean |d|
   double largest = 0;            // max |d|
   double bias = 0;               // mean d
   double cut_mse = 0;            // mean d^2 of x and r clamped to 0..1
-  std::uint64_t non_finite = 0;  // values of x or r, excluded above
+  std::uint64_t non_finite = 0;  // values not finite in x or r, excluded from the above
 };
 
-// Compares two pictures. REQUIRES: both have the same number of values.
+// Compares two images. REQUIRES: both have the same number of values.
 Difference difference(std::span<const float> picture, std::span<const float> reference);
 
 }  // namespace orrery

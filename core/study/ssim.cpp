@@ -14,7 +14,7 @@ namespace {
 
 using Plane = std::vector<double>;
 
-// Computes luma by Rec. 709, which has the primaries of sRGB.
+// Computes Rec. 709 luma. Rec. 709 and sRGB have the same primaries.
 Plane luma_of(std::span<const float> linear) {
   constexpr std::array kWeights{0.2126, 0.7152, 0.0722};
   Plane luma(linear.size() / 3);
@@ -23,7 +23,7 @@ Plane luma_of(std::span<const float> linear) {
   return luma;
 }
 
-constexpr int kReach = 5;  // pixels to each side
+constexpr int kReach = 5;  // pixels on each side of the centre
 constexpr double kDeviation = 1.5;
 
 // Returns the weights of neighbours by distance in pixels.
@@ -34,7 +34,8 @@ std::array<double, kReach + 1> weights_by_distance() {
   return weights;
 }
 
-// Computes weighted means along lines of `count` values, `step` apart, which begin at multiples of `next`.
+// Computes weighted means along `lines` lines of `count` values each. The values of a line are `step` apart.
+// Lines begin at multiples of `next`.
 Plane smoothed_along(const Plane& plane, int count, std::size_t step, std::size_t lines, std::size_t next) {
   const auto by_distance = weights_by_distance();
   Plane smoothed(plane.size());

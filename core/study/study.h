@@ -12,34 +12,36 @@ namespace orrery {
 inline constexpr int kMaxChartSamples = 1024, kMaxChartRounds = 16;
 inline constexpr std::int64_t kMaxChartPixels = std::int64_t{1} << 20;
 
-// Charts speed against accuracy for one picture of a scene. The configurations vary technique, ray depth,
-// precision and samples up to those of the picture. The reference has the picture's technique, double
+// Charts speed against accuracy for one view of a scene. The configurations vary technique, ray depth,
+// precision and samples, up to those of the view. The reference has the technique of the view, double
 // precision and four times the samples of the highest configuration. Effects that this technique does not
-// model are not counted as errors. Each round renders all configurations with a seed of its own; the
-// reference has two. A configuration that does the same work as a simpler one is dropped after the first
-// round. From the second round on, dominated configurations get no more rounds. Not thread-safe.
+// model are not counted as errors. Each round renders all configurations with its own seed. The reference is
+// the mean of two images with further seeds. After the first round, configurations with the same rays and
+// error as a simpler one are dropped. After the second round, dominated configurations are not rendered any
+// more. Not thread-safe.
 class Study {
  public:
   struct Extent {
-    int samples = 64;  // highest configuration; 1, 4, 16, ... up to it
-    int rounds = 3;    // maximum pictures per configuration
-    int width = 0;     // pixels of the rendered pictures; 0: as requested, which is also the maximum
+    int samples = 64;  // per pixel, upper limit of 1, 4, 16, ...
+    int rounds = 3;    // maximum images per configuration
+    int width = 0;     // rendered images, in pixels; 0 or more than requested: as requested
     int threads = 1;   // assumed by Chart::full_seconds()
   };
-  // Charts the picture of `view`. Throws InputError (/image) for more than kMaxChartPixels, and
-  // (/render/samples, /render/precision) if `view` sets an option that the chart varies. The scene must live
-  // until complete(). REQUIRES: samples in 1..kMaxChartSamples, rounds in 1..kMaxChartRounds.
+  // Charts the image of `view`. Throws InputError for more than kMaxChartPixels, and if `view` sets samples,
+  // precision, layers, a budget or a view other than `picture`. The scene must live until complete().
+  // REQUIRES: samples in [1, kMaxChartSamples], rounds in [1, kMaxChartRounds].
   Study(const Scene& scene, const RenderRequest& view, const Extent& extent);
 
-  // Returns the number of pictures to render: two of the reference, then the configurations, round by round.
-  // The number falls when a round makes later pictures unnecessary.
+  // Returns the number of images to render: two for the reference, then the configurations, round by round.
+  // The number decreases when a round makes later images unnecessary.
   int pictures() const { return kReferences + static_cast<int>(turns_.size()); }
-  // Returns the request of picture 0 <= number < pictures(), to be rendered as FilmStorage::linear32.
+  // Returns the request of an image, to be rendered as FilmStorage::linear32. REQUIRES: 0 <= number <
+  // pictures().
   RenderRequest request(int number) const;
-  // Adds the next picture, in order of their numbers.
+  // Adds the next image, in the order of the numbers.
   void add(const RenderResult& rendered);
   bool complete() const { return added_ == pictures(); }
-  // Frees memory that only add() needs. No picture may follow.
+  // Frees memory that only add() needs. add() must not be called afterwards.
   void end() { reference_ = std::vector<float>(); }
 
   const std::string& scene_id() const { return chart_.scene_id; }
@@ -49,7 +51,7 @@ class Study {
   RenderRequest request_of(const Point& point) const { return request(point.configuration, kReferences); }
 
  private:
-  static constexpr int kReferences = 2;  // pictures averaged into the reference
+  static constexpr int kReferences = 2;  // images averaged into the reference
   struct Turn {
     std::size_t point;
     int round;
@@ -57,7 +59,7 @@ class Study {
 
   void add_configurations(const Plan& plan, int max_samples);
   RenderRequest request(const Configuration& configuration, int seed_step) const;
-  // Queries of a picture: at the requested size, and at most kPictureWidth wide.
+  // Query strings of an image: at the requested size, and at most kPictureWidth pixels wide.
   struct Plans {
     std::string whole, picture;
   };
@@ -71,8 +73,8 @@ class Study {
   std::uint64_t seed_ = 0;
   int added_ = 0;
   std::vector<float> reference_;  // empty once complete
-  std::vector<Turn> turns_;       // one per picture of a point, both rendered and still to come
-  std::vector<bool> same_;        // by point: does the work of a simpler model
+  std::vector<Turn> turns_;       // one per image of a point, rendered or pending
+  std::vector<bool> same_;        // by point: same rays and error as a simpler model
   Chart chart_;
 };
 

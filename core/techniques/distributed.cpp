@@ -14,16 +14,17 @@ class Distributed final : public PathTracer<T> {
 
 }  // namespace
 
-// The default depth is that of Whitted's trees, plus the ray to a light source, which counts along a path.
+// The default depth is that of `whitted` plus 1, because the ray to a light source counts along a path.
 TechniqueType distributed_type() {
-  return {.name = "distributed",
-          .summary = "Distributed ray tracing: soft shadows, gloss, translucency, lens, shutter (Cook 1984).",
-          .max_depth = 6,
-          .secondary_rays = true,
-          .draws_light = true,
-          .not_followed = {"interreflection", "caustics"},
-          .make_float = make_tracer_of<Distributed, float>,
-          .make_double = make_tracer_of<Distributed, double>};
+  return {
+      .name = "distributed",
+      .summary = "Distributed ray tracing: soft shadows, gloss, translucency, lens, motion blur (Cook 1984).",
+      .max_depth = 6,
+      .secondary_rays = true,
+      .draws_light = true,
+      .not_followed = {"interreflection", "caustics"},
+      .make_float = make_tracer_of<Distributed, float>,
+      .make_double = make_tracer_of<Distributed, double>};
 }
 
 }  // namespace orrery

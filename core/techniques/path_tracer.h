@@ -8,11 +8,11 @@
 
 namespace orrery {
 
-// Base of techniques that follow one path per sample. Each vertex samples one light source, which lights all
-// lobes, and one direction of the followed lobes. Emission counts up to the plan's maximum depth, light
-// sources at all vertices before it. From the second vertex on, paths survive with the square root of their
-// throughput as probability (Russian roulette). If diffuse lobes are not followed, their ambient light
-// replaces interreflection. They may then sample a direction that finds only emitters.
+// Base of techniques that follow one path per sample. Each vertex samples one light source, for all lobes,
+// and one direction of the followed lobes. Emission is added up to Plan::max_depth, sampled light up to one
+// depth less. From the second vertex on, the survival probability of a path is the square root of its
+// throughput, at least 0.05 (Russian roulette). If diffuse lobes are not followed, reflected ambient light
+// replaces interreflection. DiffuseRays then adds the emitted light that light sampling misses.
 template <class T>
 class PathTracer : public Wavefront<T> {
  public:
@@ -34,26 +34,27 @@ class PathTracer : public Wavefront<T> {
   }
   void shade(const LaneGroups& groups, const LaneGroups& met) final;
 
-  // Adds ambient light in place of the light that smooth surfaces would mirror and refract.
+  // Adds ambient light in place of the light that specular surfaces would mirror and refract.
   void add_ambient_of_mirrors(const LaneGroups& met);
   void add_emitted_radiance(const LaneGroups& groups, const LaneGroups& met);
-  // Adds emission_ of second vertices to the light of the first ones. The first vertices find this light by
-  // light sampling too, and it is neither shared nor indirect.
+  // Adds emission_ of second vertices to the sums of the camera rays. First vertices sample this light too,
+  // so it is direct light, which is neither shared nor clamped.
   void add_emission_to_first(const LaneGroups& groups);
-  // Adds indirect light up to Plan::clamp_indirect.
+  // Adds indirect light, clamped to Plan::clamp_indirect, and records the excess as clamped().
   void add_clamped();
   // Samples directions and spawns the rays along them.
   void scatter(const LaneGroups& met);
   void continue_path(int i);
-  // Ends the paths. Light of longer paths is left out or replaced by ambient light, and its limit is recorded
-  // as omitted.
+  // Ends the paths at the depth limit. Light of longer paths is left out or replaced by ambient light, and
+  // its upper bound is recorded as omitted.
   void end(const LaneGroups& met);
 
   MaskOf<N> surface_lanes(int i) const {
     const auto primitive = load_index<T>(this->vertices_->hits.primitive, i);
     return mask_cast<N>(primitive != IndexLanes<T>(IndexOf<T>{kNoPrimitive}));
   }
-  // Returns the paths' throughput at their first vertex, for paths that share their second vertices.
+  // Returns the weights of the directions sampled at the first vertices, for the paths in register i. With
+  // path reuse, their throughput excludes these weights.
   Vec3<N> first_weights(int i) const;
   // Returns the lanes whose reflected light does not depend on the view.
   MaskOf<N> view_independent_lanes(int i) const;
@@ -61,9 +62,9 @@ class PathTracer : public Wavefront<T> {
   const Lobes followed_;
   SampledLight<T> sampled_light_;
   const bool has_emission_pass_;
-  std::unique_ptr<DiffuseRays<T>> diffuse_rays_;  // null if none are needed
+  std::unique_ptr<DiffuseRays<T>> diffuse_rays_;  // null if not needed
   std::unique_ptr<PathReuse<T>> reuse_;           // null without path reuse
-  std::unique_ptr<Vec3Array<T>> indirect_;        // by slot; null without clamping
+  std::unique_ptr<Vec3Array<T>> indirect_;        // by camera ray; null without clamping
   ScatterBatch<T> scatter_;
   SpecularBatch<T> specular_;
   Vec3Array<T> emission_;

@@ -4,7 +4,7 @@
 
 namespace orrery {
 
-// One line per type. Each type is defined in the file of its name.
+// One line per type. NAME.cpp defines NAME_type().
 // clang-format off
 #define ORRERY_TECHNIQUES(add) \
   add(raycast)                 \

@@ -7,8 +7,8 @@
 
 namespace orrery {
 
-// Base of techniques that light surfaces by ambient light and every light source, and follow only perfectly
-// specular directions, all of them.
+// Base of techniques that add ambient light and the direct light of every source, and follow perfectly
+// specular directions only.
 template <class T>
 class SpecularTree : public Wavefront<T> {
  public:
@@ -18,14 +18,14 @@ class SpecularTree : public Wavefront<T> {
   SpecularTree(const World<T>& world, const Plan& plan);
 
  protected:
-  // Continues at specular surfaces: calls follow() or cut() for the lanes of each group. `groups` are the
-  // registers with a specular surface.
+  // Continues at specular surfaces: calls follow() or cut() for the specular lanes of each register of
+  // `groups`. REQUIRES: each of these registers has a specular surface.
   virtual void scatter(const LaneGroups& groups) = 0;
 
-  // Spawns a ray from the surface at register i along `direction`, with `weight` per channel. Cuts the ray
-  // instead if it is too deep or too weak.
+  // Spawns rays from the surfaces in the lanes `mask` of register i along `direction`, with `weight` per
+  // channel. Cuts rays beyond Plan::max_depth or with a throughput below Plan::min_contribution.
   void follow(Kind kind, int i, const MaskOf<N>& mask, const Vec3<N>& direction, const Vec3<N>& weight);
-  // Replaces untraced rays by ambient light, and records them as omitted.
+  // Adds ambient light in place of untraced rays, and records the rays as omitted.
   void cut(int i, const MaskOf<N>& mask, const Vec3<N>& weight);
   // Returns the lanes of register i whose material is specular.
   MaskOf<N> specular_lanes(int i) const {

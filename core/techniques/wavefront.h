@@ -8,8 +8,8 @@
 // Main loop of all techniques. Each batch of rays passes as a whole through the stages
 //   closest hit -> surface -> shading (by the technique) -> deposit
 // and the rays spawned by shading form the next batches. There is no recursion: batches wait on a stack, at
-// most two per depth, so memory is bounded for every scene. The rays of a batch, and so the order in which a
-// slot's light is summed, depend only on the scene. They do not depend on lane width, slice or thread.
+// most two per depth, so memory is bounded for every scene. The rays of a batch, and therefore the order of
+// sums, depend only on the scene, not on lane width, slice or thread.
 namespace orrery {
 
 template <class T>
@@ -22,37 +22,38 @@ class Wavefront : public Tracer<T> {
              const Checkpoint& checkpoint) final;
 
  protected:
-  // Hits of the current batch.
+  // Rays of the current batch and their hits.
   struct Vertices {
     PathBatch<T>* paths;
     HitBatch<T> hits;
     SurfaceBatch<T> surface;
-    // Radiance so far toward each ray's origin: the background for rays that miss everything.
+    // Radiance toward each ray's origin. Starts as the background for rays that miss everything, else as 0.
     Vec3Array<T> radiance;
   };
 
   // Adds the light that leaves surfaces toward the origins of the rays of `groups`, and continues paths by
-  // spawn(). `met`: those registers with a surface.
+  // spawn(). `met` are the registers of `groups` with a surface.
   virtual void shade(const LaneGroups& groups, const LaneGroups& met) = 0;
 
-  // Hooks before a batch of camera rays and after all rays spawned from it. finish() returns false if the
+  // Called before a batch of camera rays, and after all rays spawned from it. finish() returns false if the
   // work is cancelled.
   virtual void begin() {}
   virtual bool finish() { return true; }
-  // Returns the sums that the light of rays of this depth is added to, by slot.
+  // Returns the sums, by camera ray, to which the light of rays of this depth is added.
   virtual Vec3Array<T>& sums(int /*depth*/) { return out_->radiance; }
 
   enum class Kind { reflected, refracted };
-  // Spawns a ray from the surface at register i along `direction` that carries `throughput` to its slot.
-  // Returns the mask as bits.
+  // Spawns rays from the surfaces in the lanes `mask` of register i along `direction`. `throughput` is the
+  // fraction of their radiance that reaches the camera ray. Returns the mask as bits.
   unsigned spawn(Kind kind, int i, const MaskOf<N>& mask, const Vec3<N>& direction,
                  const Vec3<N>& throughput);
-  // Spawns the only ray from this vertex, with its sampling density.
+  // Spawns the only ray from each vertex. `pdf` is the density per solid angle of its direction.
   void spawn(int i, const MaskOf<N>& mask, const Vec3<N>& direction, const Vec3<N>& throughput, const N& pdf);
-  // Records untraced rays as omitted, by their weights.
+  // Adds `weight` times Plan::cut_range to the omitted light of the camera rays and counts the untraced rays,
+  // for the lanes `mask`.
   void record_omitted(int i, const MaskOf<N>& mask, const Vec3<N>& weight);
 
-  // Returns the light removed by clamping, by slot.
+  // Returns the light removed by clamping, by camera ray.
   Vec3Array<T>& clamped() { return out_->clamped; }
 
   const Draws& batch_draws() const { return *draws_; }
@@ -68,7 +69,7 @@ class Wavefront : public Tracer<T> {
  private:
   void start(const RayBatch<T>& camera_rays);
   void run(PathBatch<T>& paths);
-  // Gives each ray the time of its camera ray.
+  // Sets the time of each ray to that of its camera ray.
   void inherit_times(PathBatch<T>& paths) const;
   void run_slice(const LaneGroups& groups);
   void record_channels(const LaneGroups& groups, const LaneGroups& met);
@@ -77,7 +78,7 @@ class Wavefront : public Tracer<T> {
 
   std::vector<std::unique_ptr<PathBatch<T>>> waiting_, spare_;
   std::unique_ptr<PathBatch<T>> reflected_, refracted_;
-  Array<T> time_;  // times of camera rays, by slot; filled only if Plan::shutter > 0
+  Array<T> time_;  // times of the camera rays; filled only if Plan::shutter > 0
   const Draws* draws_ = nullptr;
   TraceResult<T>* out_ = nullptr;
   TraceCounts* counts_ = nullptr;

@@ -58,7 +58,7 @@ class Recorder final : public Accelerator<T> {
   DecimatingSampler<T>& into_;
 };
 
-// Appends the first hits of up to one batch of rays.
+// Appends one sample per ray: the ray and its first hit. REQUIRES: `some` fits in a batch.
 template <class T>
 void find_occluders(const Accelerator<T>& accelerator, std::span<const ShadowRay<T>> some,
                     std::vector<OcclusionSample>& samples) {

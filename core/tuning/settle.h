@@ -14,7 +14,7 @@ class SettledPlan {
   const Plan* operator->() const { return &plan_; }
   double settle_ms() const { return settle_ms_; }  // time of the decision; 0 if it was cached
 
-  // Returns a copy that traces rays down to another weight.
+  // Returns a copy with another minimum contribution of traced rays.
   SettledPlan with_min_contribution(double weight) const {
     SettledPlan other = *this;
     other.plan_.min_contribution = weight;
@@ -28,10 +28,11 @@ class SettledPlan {
   double settle_ms_;
 };
 
-// Chooses the accelerator if the plan leaves it open: the one with the lowest cost for the work counted on
-// some tiles of the image. Records the choice in the plan's decisions. Decides once per scene and number
-// type, so that all frames of a scene use the same accelerator. Thread-safe. Throws Cancelled if `stop` is
-// requested, and the errors of AcceleratorType.
+// Chooses the accelerator if the plan leaves it open. Estimates costs from the operations counted on some
+// tiles of the image. The cheapest accelerator replaces the planned one if it costs less than 85 % of it.
+// Records the choice in the plan's decisions. Decides once per scene and number type, so that all frames of a
+// scene use the same accelerator. Thread-safe. Throws Cancelled if `stop` is requested, and the errors of
+// AcceleratorType.
 SettledPlan settle(const PreparedScene& scene, Plan plan, std::stop_token stop = {});
 
 }  // namespace orrery

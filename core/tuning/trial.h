@@ -7,9 +7,9 @@
 
 namespace orrery {
 
-// Traces up to `most` tiles spread over the plan's image, one sample per pixel. Returns the counted work.
-// Ends after a million rays or a few more, at the same ray for every accelerator. Throws Cancelled if `stop`
-// is requested.
+// Traces up to `most` tiles spread over the plan's image, one sample per pixel. Returns the operation counts.
+// Stops soon after a million rays, at the same ray for every accelerator. Throws Cancelled if `stop` is
+// requested.
 template <class T>
 TraceCounts try_tiles(const World<T>& world, const Plan& plan, int most, std::stop_token stop = {});
 

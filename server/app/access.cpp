@@ -16,7 +16,8 @@ namespace {
 constexpr std::size_t kMinKeyBytes = 32;
 constexpr std::size_t kMaxFileBytes = 1 << 20;
 
-// Reads a regular file. Rejects pipes, which might never end.
+// Returns the bytes of a regular file. Throws InputError if the file is larger than kMaxFileBytes or is a
+// pipe, which might never end.
 std::string read_file(const std::string& path) {
   std::error_code problem;
   if (!std::filesystem::is_regular_file(path, problem))
@@ -27,8 +28,7 @@ std::string read_file(const std::string& path) {
   file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   bytes.resize(static_cast<std::size_t>(file.gcount()));
   if (bytes.size() > kMaxFileBytes)
-    throw InputError(path, "file has more than " + grouped(kMaxFileBytes) + " bytes (limit " +
-                               grouped(kMaxFileBytes) + ")");
+    throw InputError(path, "file must have at most " + grouped(kMaxFileBytes) + " bytes");
   return bytes;
 }
 
@@ -48,7 +48,7 @@ Access::Holder read_holder(const std::string& line) {
   words >> name >> scopes >> hash;
   if (hash.empty() || words >> more)
     throw InputError("", "must be a name, scopes and the SHA-256 of a token, separated by blanks");
-  if (!is_sha256_hex(hash)) throw InputError("", "last word must be a SHA-256 of 64 digits 0-9 and a-f");
+  if (!is_sha256_hex(hash)) throw InputError("", "SHA-256 of the token must be 64 digits, 0-9 or a-f");
   return {.name = name, .token_sha256 = hash, .scopes = parse_scopes(scopes)};
 }
 
@@ -58,8 +58,8 @@ std::string signed_text(std::string_view address, std::int64_t expires) {
 
 }  // namespace
 
-Access::Access(std::string tokens_file, std::string share_key_file)
-    : tokens_file_(std::move(tokens_file)), share_key_file_(std::move(share_key_file)) {
+Access::Access(std::string tokens_file, std::string link_signing_key_file)
+    : tokens_file_(std::move(tokens_file)), share_key_file_(std::move(link_signing_key_file)) {
   reload();
 }
 
@@ -92,7 +92,7 @@ Access::TokenTable Access::read() const {
   }
   if (needs_token() && known.holders.empty() && problems.empty())
     problems.push_back(
-        {tokens_file_, "file must contain at least one token; without one, nobody can use the service"});
+        {tokens_file_, "file must contain at least one token; otherwise no client can use the service"});
   if (!problems.empty()) throw InputError(std::move(problems));
   return known;
 }
@@ -113,7 +113,7 @@ std::optional<Access::Holder> Access::holder_of(std::string_view token) const {
 
 std::string Access::sign(std::string_view address, std::int64_t expires) const {
   const auto now = known();
-  if (now->key.empty()) throw NotFound("service has no key to sign links (share_key_file)");
+  if (now->key.empty()) throw NotFound("cannot sign links: link_signing_key_file is not set");
   return hmac_sha256_hex(now->key, signed_text(address, expires));
 }
 

@@ -10,27 +10,30 @@
 
 namespace orrery {
 
-// Set of rights that a token grants or a request needs. `read`: get existing resources and their images.
-// `render`: render other scenes and start jobs. `write`: store scenes and assets, and remove own ones.
-// `admin`: remove scenes, assets and jobs of other clients.
+// Set of permissions that a token grants or a request needs.
+//  - `read`: get stored resources and render images of stored scenes.
+//  - `render`: render scenes from a request body, and start and cancel jobs.
+//  - `write`: store scenes and assets, and remove those of the same client.
+//  - `admin`: remove scenes, assets and jobs of other clients.
 enum class Scope : unsigned { none = 0, read = 1, render = 2, write = 4, admin = 8 };
 inline constexpr std::array<std::string_view, 4> kScopes{"read", "render", "write", "admin"};
 constexpr Scope operator|(Scope a, Scope b) {
   return static_cast<Scope>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
 }
-// Returns the name of the first scope of `needed` that `held` lacks, or nullopt if it lacks none.
+// Returns the name of the first scope of `needed` that `held` lacks, or nullopt if `held` includes all of
+// them.
 std::optional<std::string_view> missing_scope(Scope held, Scope needed);
 
-// Access control by tokens and signed links. Safe from any thread.
+// Access control by tokens and signed links. Thread-safe.
 class Access {
  public:
-  // Each line of `tokens_file` is "NAME SCOPE[,SCOPE...] SHA256-OF-TOKEN"; # starts a comment. If the name is
-  // empty, everyone may do everything except remove resources of others. `share_key_file` contains the key
-  // that signs links, at least 32 bytes. If the name is empty, links are disabled. Throws InputError with
-  // file and line, also if `tokens_file` has no token.
-  Access(std::string tokens_file, std::string share_key_file);
+  // Each line of `tokens_file` is "NAME SCOPE[,SCOPE...] SHA256-OF-TOKEN". # starts a comment. If
+  // `tokens_file` is "", every client has all permissions except removing resources of other clients.
+  // `link_signing_key_file` contains the key that signs links, at least 32 bytes. If it is "", links are
+  // disabled. Throws InputError with file and line if a file is invalid or `tokens_file` contains no token.
+  Access(std::string tokens_file, std::string link_signing_key_file);
 
-  // Reads both files again. Throws as the constructor does, and then changes nothing.
+  // Reads both files again. If it throws like the constructor, the old tokens and key stay in use.
   void reload();
 
   bool needs_token() const { return !tokens_file_.empty(); }
@@ -40,12 +43,14 @@ class Access {
     std::string name, token_sha256;
     Scope scopes;
   };
-  // Returns the holder of the token, or nullopt if the token is unknown. Takes equally long for every token.
+  // Returns the holder of the token, or nullopt if the token is unknown. The time taken does not reveal how
+  // much of a stored hash matches.
   std::optional<Holder> holder_of(std::string_view token) const;
 
   // Returns the signature of the URL `address`, valid until `expires` (seconds since 1970). Throws NotFound
-  // if there is no key.
+  // if no key is configured.
   std::string sign(std::string_view address, std::int64_t expires) const;
+  // Returns whether the signature is valid. Does not check whether it has expired.
   bool is_signed(std::string_view address, std::int64_t expires, std::string_view signature) const;
 
  private:
@@ -61,10 +66,10 @@ class Access {
   std::shared_ptr<const TokenTable> known_;  // guarded by mutex_
 };
 
-// Returns a line for a tokens file.
+// Returns the line of a tokens file that grants `scopes` to `token`.
 std::string token_line(std::string_view name, std::string_view scopes, std::string_view token);
 
-// Parses a comma-separated list of scopes. Throws InputError.
+// Parses a comma-separated list of scopes. Throws InputError if it is empty or a scope is unknown.
 Scope parse_scopes(std::string_view list);
 
 }  // namespace orrery

@@ -11,16 +11,18 @@
 namespace orrery {
 namespace {
 
-constexpr double kRaysAByte = 1;                         // JSON or mesh data; measured: 0.5 to 2
-constexpr double kExpectedRate = 10e6;                   // rays per second, all slots together
-constexpr std::chrono::milliseconds kMinTimeSlice{50};   // until other clients may preempt work
-constexpr auto kOwnClientTimeSlice = 4 * kMinTimeSlice;  // until its own client may preempt it
-constexpr double kMaxDebt = 16;  // maximum debt in units of kMinTimeSlice: a wait of seconds, not minutes
+constexpr double kRaysAByte = 1;        // rays per byte of JSON or mesh data; measured: 0.5 to 2
+constexpr double kExpectedRate = 10e6;  // rays per second over all slots
+// Minimum time in a slot before work of another client, or of the same client, may preempt.
+constexpr std::chrono::milliseconds kMinTimeSlice{50};
+constexpr auto kOwnClientTimeSlice = 4 * kMinTimeSlice;
+// Maximum debt of a client in units of kMinTimeSlice. It delays the client by seconds, not minutes.
+constexpr double kMaxDebt = 16;
 constexpr double kSmallCost = 2 * kFixedCost;
-constexpr double kMemory_s = 10;  // busy seconds in which a measurement decays to 1/e
+constexpr double kMemory_s = 10;  // busy seconds until a measurement has decayed to 1/e
 
-// Returns the charge for time in one of `places` slots, in rays. Uses a constant rate. The measured rate
-// would charge too little after slow work, when the charge matters most.
+// Returns the charge in rays for holding one of `places` slots for the time `held`. The rate is constant. The
+// measured rate would charge too little after slow work, when the charge matters most.
 double rays_in(std::chrono::duration<double> held, int places) {
   return held.count() * kExpectedRate / places;
 }
@@ -32,7 +34,7 @@ std::string whole(double rays) {
   return text;
 }
 
-// Returns the client with the highest cost. REQUIRES: `costs` is not empty.
+// Returns the client with the highest cost, and that cost. REQUIRES: `costs` is not empty.
 std::pair<std::string, double> greediest(const std::map<std::string, double>& costs) {
   return *std::max_element(costs.begin(), costs.end(),
                            [](const auto& a, const auto& b) { return a.second < b.second; });
@@ -47,7 +49,7 @@ std::string in_millions(double rays) {
 }  // namespace
 
 TooManyRays::TooManyRays(double expected, double most)
-    : InputError("", "image takes an estimated " + whole(expected) + " rays (limit " + whole(most) +
+    : InputError("", "image needs an estimated " + whole(expected) + " rays (limit " + whole(most) +
                          ", request_rays); start a job for longer work: POST /v1/jobs") {}
 
 double cost_of_reading(std::size_t bytes) { return kFixedCost + kRaysAByte * static_cast<double>(bytes); }
@@ -62,9 +64,9 @@ void Quota::require_one_more(int all, int own) const {
     throw LimitExceeded(items(all, "") + " (limit " + std::to_string(most) + ", " + limit + ")", retry_s,
                         limit);
   if (own >= share)
-    throw ClientLimitExceeded(items(own, " of this client") + " (limit " + std::to_string(share) +
-                                  " per client, half of " + limit + ")",
-                              retry_s, limit);
+    throw ClientLimitExceeded(
+        items(own, " of this client") + " (limit " + std::to_string(share) + " per client, " + limit + ")",
+        retry_s, limit);
 }
 
 int Admission::running() const {
@@ -103,7 +105,7 @@ Admission::Ticket Admission::enter_again(const SlotRequest& demand, const std::s
 }
 
 Admission::Ticket Admission::enter(const SlotRequest& demand, Entry entry, const std::stop_token& stop) {
-  HandlerSlots::Wait wait;  // destroyed after the lock
+  HandlerSlots::Wait wait;  // destroyed after `lock`
   std::unique_lock lock(mutex_);
   if (entry == Entry::first && !may_begin(demand, entry)) make_room(demand);
   const double charge = std::min(demand.cost, kFixedCost + rays_in(kMinTimeSlice, limits_.running));
@@ -193,7 +195,7 @@ Admission::Subscription::~Subscription() {
   const std::lock_guard lock(in_.mutex_);
   subscribers_->erase(subscribers_->find(client_));
   update_works();
-  in_.start_next();  // work of `client_` may preempt it sooner now
+  in_.start_next();  // requests of `client_` may now preempt the work earlier
 }
 
 void Admission::Subscription::update_works() {
@@ -235,16 +237,16 @@ void Admission::wait_for_slot(std::unique_lock<std::mutex>& lock, QueueEntry& wo
   work.state = State::waits;
   start_next();
   work.changed.wait(lock, stop, [&] { return work.state != State::waits; });
-  if (work.has_begun()) {  // a stop or preemption shows at the next checkpoint
+  if (work.has_begun()) {  // the next checkpoint reports a stop or a preemption
     waits_[static_cast<int>(priority)].Observe(std::chrono::duration<double>(timer_.now() - asked).count());
     return;
   }
   const State state = work.state.exchange(State::dropped);
   if (state == State::waits) throw Cancelled();
   throw ClientLimitExceeded(
-      "queue is full: request dropped, because this client has the most rays queued (limit " +
-          in_millions(limits_.queue_rays) + ", queue_rays)",
-      retry_after_s(priority), "queue_rays");
+      "queue is full: request was dropped because this client has the most rays queued (limit " +
+          in_millions(limits_.max_queued_rays) + ", max_queued_rays)",
+      retry_after_s(priority), "max_queued_rays");
 }
 
 void Admission::update_backlog() {
@@ -292,7 +294,7 @@ void Admission::leave(QueueEntry& work, bool done) {
   if (done)
     measure(work.demand.cost);
   else if (running_ > 0)
-    measured_ = timer_.now();  // aborted: the share done is unknown
+    measured_ = timer_.now();  // aborted: the traced rays are unknown
   if (work.state == State::runs) release_slot(work);
   if (work.state != State::dropped) charge_overruns(work);
   works_.remove_if([&](const QueueEntry& other) { return &other == &work; });
@@ -308,7 +310,7 @@ void Admission::charge_overrun(const QueueEntry& work, const std::string& client
   const int priority = static_cast<int>(work.demand.priority);
   const auto from = std::max(since, work.charged_from.value_or(charged_from(work)));
   const double used = kFixedCost + rays_in(timer_.now() - from, limits_.running);
-  const bool came_later = since > work.since;  // joined running work of others
+  const bool came_later = since > work.since;  // joined work that was already running
   const double overrun = used - (came_later ? kFixedCost : std::max(kFixedCost, work.charge));
   if (overrun <= 0) return;
   const double most = virtual_time_[priority] + kMaxDebt * rays_in(kMinTimeSlice, limits_.running);
@@ -371,7 +373,8 @@ Admission::QueueEntry* Admission::next() {
   return best;
 }
 
-// Preempted work does not queue behind later requests of its client.
+// Returns the virtual finish time of `work` for one of its clients. Preempted work does not queue behind
+// later requests of the client.
 double Admission::virtual_finish(const QueueEntry& work, const std::string& client) const {
   const bool again = work.entry == Entry::again;
   const int priority = static_cast<int>(work.demand.priority);
@@ -417,7 +420,7 @@ double Admission::waiting_cost(Priority priority) const {
 
 bool Admission::fits(Priority priority, double cost) const {
   const double waiting = waiting_cost(priority);
-  return waiting == 0 || waiting + cost <= limits_.queue_rays;
+  return waiting == 0 || waiting + cost <= limits_.max_queued_rays;
 }
 
 Admission::QueueEntry* Admission::newest_droppable(Priority priority, const std::string& client) {
@@ -428,8 +431,10 @@ Admission::QueueEntry* Admission::newest_droppable(Priority priority, const std:
   return newest == works_.rend() ? nullptr : &*newest;
 }
 
-// Drops new work of the client with the most queued work until `demand` fits. Begun work cannot be dropped,
-// but must not lock others out: a client with less queued work is admitted anyway.
+// Drops unstarted requests of the client with the most queued work until `demand` fits. Throws LimitExceeded
+// or ClientLimitExceeded if the client of `demand` would have the most. Started work cannot be dropped. If
+// nothing else is queued, `demand` is admitted beyond the limit, so that started work does not lock out other
+// clients.
 void Admission::make_room(const SlotRequest& demand) {
   const Priority priority = demand.priority;
   while (!fits(priority, demand.cost)) {
@@ -448,11 +453,11 @@ void Admission::make_room(const SlotRequest& demand) {
 void Admission::refuse(Priority priority, double own) const {
   const double all = waiting_cost(priority);
   const std::string full = "queue is full: " + in_millions(all) + " rays queued",
-                    limit = " (limit " + in_millions(limits_.queue_rays) + ", queue_rays)";
+                    limit = " (limit " + in_millions(limits_.max_queued_rays) + ", max_queued_rays)";
   if (own > 0 && own < all)
     throw ClientLimitExceeded(full + ", " + in_millions(own) + " of them by this client" + limit,
-                              retry_after_s(priority), "queue_rays");
-  throw LimitExceeded(full + limit, retry_after_s(priority), "queue_rays");
+                              retry_after_s(priority), "max_queued_rays");
+  throw LimitExceeded(full + limit, retry_after_s(priority), "max_queued_rays");
 }
 
 void Admission::measure(double cost) {

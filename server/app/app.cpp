@@ -14,23 +14,23 @@ namespace orrery {
 
 namespace {
 
-// Rays per second and thread. Measured on the sample scenes: 15 to 80 million.
+// Rays per second and thread. The sample scenes reach 15 to 80 million.
 constexpr double kRaysAThreadSecond = 50e6;
 
 Settings decided(Settings settings, const WorkerPool& pool) {
   settings.threads = pool.threads();
-  if (settings.renders == 0) settings.renders = 2 * pool.threads();
+  if (settings.max_concurrent_renders == 0) settings.max_concurrent_renders = 2 * pool.threads();
   if (settings.request_rays == 0)
     settings.request_rays =
         kRaysAThreadSecond * pool.threads() * static_cast<double>(settings.request_seconds.count());
   return settings;
 }
 
-// Throws InputError if the film of sums for the plan's layers takes more than half of `work_bytes`.
+// Throws InputError if the film with the plan's layers needs more than half of `work_bytes`.
 void require_layers_fit(const Plan& plan, std::size_t work_bytes) {
   const std::size_t bytes = Film::bytes(plan.width, plan.height, FilmStorage::sums, plan.channels);
   if (bytes <= work_bytes / 2) return;
-  throw InputError("/render/layers", "layers take " + grouped(bytes) + " bytes at " +
+  throw InputError("/render/layers", "layers need " + grouped(bytes) + " bytes at " +
                                          std::to_string(plan.width) + " x " + std::to_string(plan.height) +
                                          " pixels (limit " + grouped(work_bytes / 2) +
                                          ", half of work_bytes)");
@@ -40,20 +40,20 @@ void require_layers_fit(const Plan& plan, std::size_t work_bytes) {
 
 App::App(const Settings& settings, Timer& timer)
     : timer_(timer),
-      access_(settings.tokens_file, settings.share_key_file),
+      access_(settings.tokens_file, settings.link_signing_key_file),
       pool_(settings.threads),
       settings_(decided(settings, pool_)),
       memory_(work_bytes(settings)),
-      scenes_(settings.store_bytes, memory_),
+      scenes_(settings.scene_cache_bytes, memory_),
       assets_(settings.asset_store_bytes),
-      pictures_(settings.picture_bytes),
-      films_(settings.film_bytes, settings.film_bytes / 4),
-      admission_({settings_.renders, settings_.queue_rays}, timer),
+      pictures_(settings.image_cache_bytes),
+      films_(settings.film_cache_bytes, settings.film_cache_bytes / 4),
+      admission_({settings_.max_concurrent_renders, settings_.max_queued_rays}, timer),
       services_{pool_,      admission_, timer,   drains_.get_token(),       ends_.get_token(), meters_,
                 estimator_, memory_,    scenes_, settings_.interactive_rays},
       streams_(settings_.connections),
-      orbits_(services_, settings.orbits, settings.request_seconds),
-      jobs_(services_, {settings.jobs, settings.jobs_kept, settings.job_bytes, settings.job_seconds,
+      orbits_(services_, settings.max_orbit_streams, settings.request_seconds),
+      jobs_(services_, {settings.jobs, settings.max_finished_jobs, settings.job_bytes, settings.job_seconds,
                         settings.job_kept_seconds}) {}
 
 template <class Work>
@@ -66,7 +66,7 @@ void App::watched(const Caller& caller, Clock::time_point since, const Stage& st
   try {
     memory->run(stop, [&] { work(stop); });
   } catch (const Cancelled&) {
-    ++meters_.given_up[static_cast<std::size_t>(stage)];
+    ++meters_.cancelled[static_cast<std::size_t>(stage)];
     watch.explain();
   }
 }
@@ -134,9 +134,9 @@ Admission::Ticket App::enter_in_time(const SlotRequest& demand, Clock::time_poin
     return ticket;
   } catch (const Cancelled&) {
     if (ends.stop_requested()) throw;
-    throw LimitExceeded("other clients used the service for longer than the image may take (limit " +
-                            number_text(seconds) + " s, seconds)",
-                        limited_retry_s(seconds), "renders");
+    throw LimitExceeded(
+        "no slot became free in time (limit " + number_text(seconds) + " s, time_limit_seconds)",
+        limited_retry_s(seconds), "max_concurrent_renders");
   }
 }
 
@@ -175,11 +175,11 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, const std::strin
           ? Films::LookupResult{std::make_shared<const RenderResult>(make_film(stop)), true}
           : films_.get(key + std::to_string(static_cast<int>(storage)), {stop, demand.client}, make_film);
   const RenderStats& stats = film.value->stats;
+  ++(film.made_here ? meters_.films_made : meters_.films_found);
   if (film.made_here) {
     timing.build = stats.build_ms;
     timing.render = stats.trace_ms;
   } else {
-    ++meters_.films_found;
     enter({Priority::interactive, demand.client, kFixedCost, demand.subscribers}, stop);
   }
   Picture picture{.bytes = {},
@@ -191,7 +191,7 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, const std::strin
   stage = Stage::encode;
   const auto start = Clock::now();
   picture.bytes = encode_film(film.value->film, format);
-  picture.bytes.shrink_to_fit();  // it may be cached
+  picture.bytes.shrink_to_fit();  // the bytes may be cached
   timing.encode = milliseconds_since(start);
   if (picture.budget) {
     picture.budget->end_at(control.used_s());
@@ -209,7 +209,7 @@ std::unique_ptr<Refinement> App::refine(RefinementSpec spec) {
 }
 
 void App::require_request_rays(const Scene& scene, const Plan& plan) {
-  // Takes the smaller estimate, so that renders of other clients cannot cause a rejection.
+  // Uses the smaller estimate, so that renders of other clients cannot cause a rejection.
   const double rays =
       ray_weight(scene, plan) * std::min(estimator_.estimate(scene, plan), expected_rays(scene, plan));
   if (rays > settings_.request_rays) throw TooManyRays(rays, settings_.request_rays);
@@ -228,7 +228,7 @@ SettledPlan App::settle(const PreparedScene& scene, const Plan& plan, const Call
 
 Forecast App::forecast(const PreparedScene& scene, const SettledPlan& plan, const Caller& caller) {
   require_request_rays(scene.scene(), *plan);
-  Plan pilots = *plan;  // pilot renders: about 1 sample per pixel, or more if there are few pixels
+  Plan pilots = *plan;  // cost of the pilots: about 1 sample per pixel, more for small images
   pilots.samples = 1;
   pilots.free_samples = false;
   std::optional<Forecast> found;

@@ -42,11 +42,10 @@ struct Caller {
   std::stop_token gone;  // stop is requested once no client waits for the result
 };
 
-// Owner of the stores, caches, queues and threads of the service, and its interface to the routes. Safe from
-// any thread.
+// Service behind the routes. Owns the stores, caches, queues and threads. Thread-safe.
 class App {
  public:
-  // Throws InputError if a file in the settings cannot be used. `timer` must outlive the app.
+  // Throws InputError if a file named in the settings is invalid. `timer` must outlive the app.
   App(const Settings& settings, Timer& timer);
   App(const App&) = delete;
 
@@ -64,46 +63,50 @@ class App {
   const WorkMemory& memory() const { return memory_; }
   ServiceCounters& meters() { return meters_; }
 
-  // The only functions that take request bodies. Both charge memory to the client, wait for a slot if the
+  // The only functions that read request bodies. Both charge memory to the client, wait for a slot if the
   // work is long, and stop once the client disconnects. Both throw ClientLimitExceeded, Busy, Cancelled and
   // TimedOut.
   //
-  // Parses a JSON body and calls `work` to read the document, which may name assets. Also throws the errors
-  // of both.
+  // Parses a JSON body and calls `work` to read the document, which may refer to assets. Also throws the
+  // errors of parsing and of `work`.
   using ReadDocument = std::function<void(const Document&, const AssetSource&)>;
   void read(Body& body, const Caller& caller, Timing& timing, const ReadDocument& work);
   AssetStore::AddResult add_asset(const std::string& sha256, Body& body, const Caller& caller);
 
   // Returns the image of the plan: cached, or rendered and encoded once for all requests that wait for it.
-  // `key` names the image in any format. An image with a time budget is rendered for each request, and the
-  // steps in `timing` count towards the budget. Throws as read(), BudgetMissed, and TooManyRays instead of
-  // rendering.
+  // `key` identifies the image regardless of its format. An image with a time budget is rendered for each
+  // request, and the steps in `timing` count towards the budget. Throws BudgetMissed and the errors of
+  // read(). Throws TooManyRays if the image is not cached and its estimated cost exceeds the limit of one
+  // request.
   Rendered render(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
                   const Caller& caller, Timing& timing);
 
-  // Returns a progressive render, which the caller advances pass by pass. Throws Busy while draining, and
-  // TooManyRays unless the image is cached. Refinement::next() throws the other errors.
+  // Returns a progressive render, which the caller advances pass by pass. Throws Busy while draining. Throws
+  // TooManyRays if the image is not cached and its estimated cost exceeds the limit of one request.
+  // Refinement::next() throws the other errors.
   std::unique_ptr<Refinement> refine(RefinementSpec spec);
 
   // Throws TooManyRays if the estimated cost of the image exceeds the limit of one request.
   void require_request_rays(const Scene& scene, const Plan& plan);
 
-  // Settles the plan in a slot, as render() would. Throws as render() does.
+  // Settles the plan as render() would. Waits for a slot if accelerators must be tried. Throws the errors of
+  // render().
   SettledPlan settle(const PreparedScene& scene, const Plan& plan, const Caller& caller);
 
-  // Predicts the cost and the error of render(), in a slot. Throws as render() does.
+  // Predicts the cost and the error of render() from pilots, which wait for a slot. Throws the errors of
+  // render().
   Forecast forecast(const PreparedScene& scene, const SettledPlan& plan, const Caller& caller);
 
   // Returns whether the service is draining: it completes running work and rejects new work.
   bool draining() const { return drains_.stop_requested(); }
-  // Returns "ok" if new work should be sent here, else the reason: "draining", "full" or "slow".
+  // Returns "ok" if load balancers should send new work, otherwise "draining", "full" or "slow".
   std::string_view readiness() const;
-  // Sets the readiness of the HTTP server: "full" if it would reject a new connection, else "ok". Call this
-  // before other threads use the app.
+  // Sets a function that returns the readiness of the HTTP server: "full" if it would reject a new
+  // connection, else "ok". Call this before other threads use the app.
   void watch_connections(std::function<std::string_view()> readiness) { connections_ = std::move(readiness); }
-  void retire() { retires_ = true; }  // reports "draining" but still accepts work
+  void retire() { retires_ = true; }  // reports "draining" but still accepts new work
   // Starts draining: routes reject new work with Busy, jobs stop, and streams end at their next frame.
-  // Running renders complete. Does not wait for them. Cannot be undone.
+  // Running renders complete, but drain() does not wait for them. Cannot be undone.
   void drain();
   // Cancels all running work.
   void end() { ends_.request_stop(); }
@@ -116,13 +119,13 @@ class App {
   // service ends, or request_seconds have passed since `since`. `stage`: current step of the work.
   template <class Work>
   void watched(const Caller& caller, Clock::time_point since, const Stage& stage, const Work& work);
-  // Waits for a slot. Throws LimitExceeded if there is none within `seconds`, of which `used_s` had passed
-  // before `since`. 0: no time limit.
+  // Waits for a slot. Throws LimitExceeded if no slot becomes free within `seconds` (0: no limit). `used_s`
+  // of them had passed before `since`.
   Admission::Ticket enter_in_time(const SlotRequest& demand, Clock::time_point since, double seconds,
                                   double used_s, const std::stop_token& ends);
-  // Returns the limits for the budget of one request.
+  // Returns the maximum rays and seconds that one request may use to meet its budget.
   RenderControl limits_of(const Scene& scene, const Plan& plan) const;
-  // Renders the image, unless its film is cached, and encodes it. The client has waited since `since`.
+  // Renders the image, unless its film is cached, and encodes it. `since`: start of the client's wait.
   Picture make(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
                const SlotRequest& demand, Clock::time_point since, const std::stop_token& stop,
                Timing& timing, Stage& stage);
@@ -138,7 +141,7 @@ class App {
   WorkMemory memory_;
   SceneStore scenes_;
   AssetStore assets_;
-  SubscribersByKey subscribers_;  // by image, in any format
+  SubscribersByKey subscribers_;  // by image, regardless of its format
   Pictures pictures_;
   Films films_;
   Admission admission_;

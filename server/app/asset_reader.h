@@ -9,11 +9,12 @@
 
 namespace orrery {
 
-// Asset source for a scene that is being parsed. Small scenes without assets are parsed at once. Other scenes
-// wait for a slot first and hold it as long as this object lives. For one thread.
+// Asset source for a scene that is being parsed. Small scenes without assets need no slot. Other scenes wait
+// for a slot, which this object holds until its destruction. Not thread-safe.
 class AssetReader final : public AssetSource {
  public:
-  // `bytes`: size of the scene's text. Waits as Admission::enter() if it is large.
+  // `bytes`: size of the scene's JSON. If it is large, waits for a slot and throws the errors of
+  // Admission::enter().
   AssetReader(const AssetSource& assets, Admission& admission, std::string client, std::size_t bytes,
               std::stop_token stop);
 

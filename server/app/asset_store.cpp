@@ -15,12 +15,13 @@ namespace {
 std::size_t bytes_of(const Texels& picture) { return picture.rgb.size() * sizeof(float); }
 
 std::size_t bytes_of(const AssetStore::Asset& asset) {
-  constexpr std::size_t kEntry = 1024;  // overhead of an entry
+  constexpr std::size_t kEntry = 1024;  // overhead of an entry in bytes
   const auto* const picture = std::get_if<AssetStore::Asset::Picture>(&asset.content);
   return kEntry + asset.bytes.size() + (picture && picture->texels ? bytes_of(*picture->texels) : 0);
 }
 
-// Returns the format of a mesh file. An upload may also be an image, so an error names those formats, too.
+// Returns the format of a mesh file. Throws InputError that lists the mesh and image formats, since an upload
+// may be either.
 MeshFormat format_of(const std::string& bytes) {
   try {
     return mesh_format(bytes);
@@ -47,7 +48,7 @@ decltype(AssetStore::Asset::content) content_of(const std::string& bytes, std::s
 
 void AssetStore::require_name(const std::string& name) {
   if (!is_sha256_hex(name))
-    throw InputError("", "asset name must be the SHA-256 of the bytes, 64 digits 0-9 and a-f (got " +
+    throw InputError("", "asset name must be the SHA-256 of the file, 64 digits 0-9 or a-f (got " +
                              name.substr(0, 80) + ")");
 }
 
@@ -55,7 +56,7 @@ AssetStore::AddResult AssetStore::add(const std::string& sha256, std::string byt
                                       const std::string& client) {
   const std::string hash = sha256_hex(bytes);
   if (hash != sha256)
-    throw InputError("", "asset name must be the SHA-256 of the bytes, " + hash + " (got " + sha256 + ")");
+    throw InputError("", "asset name must be the SHA-256 of the file, " + hash + " (got " + sha256 + ")");
   if (const auto known = assets_.find(sha256)) {
     assets_.add(sha256, client, bytes_of(**known), [&] { return *known; });
     return {*known, true};

@@ -9,8 +9,8 @@
 
 namespace orrery {
 
-// Mesh and image files by the SHA-256 of their bytes, held by the clients that uploaded them. Safe from any
-// thread.
+// Store of mesh and image files, keyed by the SHA-256 of their bytes. A file is held by the clients that
+// uploaded it. Thread-safe.
 class AssetStore final : public AssetSource {
  public:
   struct Asset {
@@ -28,7 +28,7 @@ class AssetStore final : public AssetSource {
   };
   using AssetPtr = std::shared_ptr<const Asset>;
 
-  // Throws InputError unless `name` is a SHA-256 of 64 digits 0-9, a-f.
+  // Throws InputError unless `name` is a SHA-256 of 64 digits, 0-9 or a-f.
   static void require_name(const std::string& name);
 
   explicit AssetStore(std::size_t max_bytes) : assets_(max_bytes, std::chrono::hours(1)) {}
@@ -40,7 +40,7 @@ class AssetStore final : public AssetSource {
   // Stores a file for the client. Throws InputError if the bytes have another hash, are neither mesh nor
   // image, or exceed the limit of the store. Throws LimitExceeded if other clients leave no room.
   AddResult add(const std::string& sha256, std::string bytes, const std::string& client);
-  // Throws NotFound.
+  // Throws NotFound if the asset is not stored.
   AssetPtr find(const std::string& sha256);
   // Releases the asset for the client, or with `of_all` for all clients. Removes it once no client holds it.
   // Throws NotFound, or HttpError 403 if only other clients hold it.
@@ -56,7 +56,7 @@ class AssetStore final : public AssetSource {
   // Throws InputError if the asset is not stored.
   AssetPtr find_for_scene(const std::string& sha256) const;
 
-  mutable Lru<AssetPtr> assets_;  // a read counts as a use
+  mutable Lru<AssetPtr> assets_;  // mutable: find() records a use
 };
 
 }  // namespace orrery

@@ -39,7 +39,7 @@ ordered_json samples() {
     if (!file.path.starts_with(kFolder) || !file.path.ends_with(kEnding)) continue;
     const std::string name(
         file.path.substr(kFolder.size(), file.path.size() - kFolder.size() - kEnding.size()));
-    if (name.find('/') != std::string::npos) continue;  // the schema
+    if (name.find('/') != std::string::npos) continue;  // scenes/schema/scene.json
     const auto scene = nlohmann::json::parse(file.bytes, nullptr, false);
     if (!scene.is_object()) continue;
     samples.push_back({{"name", name},

@@ -4,7 +4,7 @@
 
 namespace orrery {
 
-// Returns the types that scenes and requests can name, the sample scenes and the defaults, for menus.
+// Returns the types that scenes and requests can use, the sample scenes and the default options, for menus.
 nlohmann::ordered_json catalog_json();
 
 }  // namespace orrery

@@ -30,7 +30,7 @@ ordered_json interval_json(const std::optional<Interval>& interval) {
   return {{"low", interval->low}, {"high", interval->high}};
 }
 
-// Returns the scalar values of a point: the columns of the table.
+// Returns the scalar values of a point, which are the columns of the CSV file.
 ordered_json figures_json(const Point& point, double cheapest_ms) {
   const auto mean = [&](double Difference::*value) {
     return point.mean([&](const Measurement& s) { return s.difference.*value; });
@@ -57,8 +57,7 @@ ordered_json figures_json(const Point& point, double cheapest_ms) {
   return json;
 }
 
-// Returns the predicted seconds of the full-size image. `low` and `high` are null if the rounds give no
-// interval.
+// Returns the predicted seconds of the full-size image. `low` and `high` are null for a single round.
 ordered_json full_size_json(const Chart& chart, const Point& point) {
   const auto interval = point.cpu_ms_interval();
   return {{"seconds", chart.full_seconds(point.cpu_ms())},
@@ -95,8 +94,8 @@ ordered_json recommendations_json(const Chart& chart) {
   return all;
 }
 
-// Returns a header line and a line for each point. A null value is an empty field. A plan with commas is
-// quoted (RFC 4180).
+// Returns the chart as CSV: a header line and a line for each point. A null value is an empty field. A plan
+// with commas is quoted (RFC 4180).
 std::string csv_of(const Chart& chart, const std::string&) {
   ordered_json points = ordered_json::array();
   for (const Point& point : chart.points) points.push_back(figures_json(point, chart.cheapest_ms()));
@@ -150,7 +149,7 @@ void read_extent(Params& p, Study::Extent& extent) {
       static_cast<int>(p.integer("samples", "Maximum samples per pixel of the configurations 1, 4, 16, ...",
                                  1, kMaxChartSamples, extent.samples));
   extent.rounds = static_cast<int>(
-      p.integer("rounds", "Images per configuration with different seeds: two, more if not dominated.", 1,
+      p.integer("rounds", "Maximum images per configuration, with different seeds; two if dominated.", 1,
                 kMaxChartRounds, extent.rounds));
   extent.width = static_cast<int>(
       p.integer("width", "Width of the rendered images in pixels; default and maximum: that of the image.", 1,

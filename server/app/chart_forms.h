@@ -9,7 +9,7 @@ namespace orrery {
 
 class Params;
 
-// Reads {samples, rounds, width}.
+// Reads the keys samples, rounds and width.
 void read_extent(Params& p, Study::Extent& extent);
 
 // Output format of a chart.

@@ -69,7 +69,7 @@ ordered_json forecast_json(const Scene& scene, const Forecast& forecast) {
   return json;
 }
 
-// Returns the settings that request the plan. Options that its budget chooses are unset.
+// Returns the settings that request the plan, without the options that its budget chooses.
 RenderSettings requested(const Plan& plan) {
   RenderSettings settings = settings_of(plan);
   if (plan.free_samples) settings.samples.reset();

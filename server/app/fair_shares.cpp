@@ -140,8 +140,9 @@ std::optional<FairShares::Loss> FairShares::longest_unused(Rank below) const {
   return std::nullopt;
 }
 
-// Returns the client's least recently used entry. Brings the client's order up to date only here, so a use
-// costs the same however many clients hold the entry.
+// Returns the client's least recently used entry of its lowest rank, or nullopt if all ranks are at least
+// `below`. Updates the order of the client's list only here, so that the cost of a use does not depend on the
+// number of holders.
 std::optional<FairShares::Loss> FairShares::least_recently_used(Clients::iterator client, Rank below) {
   for (Rank rank = 0; rank < below; ++rank) {
     auto& entries = client->second.entries[rank];

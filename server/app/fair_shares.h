@@ -15,52 +15,54 @@
 
 namespace orrery {
 
-// Eviction policy of a store that clients share. An entry counts in full for each client that holds it, and
-// stays until the last client releases it. The client with the largest share gives up its least recently used
-// entry first. A client that loses an entry therefore holds at least an equal share, whatever others add.
-// Entries that were unused for a long time go before all others, so clients that never return lose their
-// shares. Not thread-safe.
+// Eviction policy of a store that clients share. The full weight of an entry counts for each client that
+// holds the entry. The entry stays until its last holder releases it. The client with the largest total
+// weight loses its least recently used entry first. A client with less than an equal share therefore loses
+// nothing, whatever other clients add. Entries that were unused for a long time are evicted before all
+// others, so that clients that never return lose their entries. Not thread-safe.
 class FairShares {
  public:
-  // Eviction order. A client gives up all entries of a lower rank before any of a higher rank.
+  // Eviction order. A client loses all entries of a lower rank before any entry of a higher rank.
   using Rank = std::size_t;
   static constexpr Rank kRanks = 3;
 
-  // Entries unused for more than `protected_for` are evicted first, whatever their holders' shares.
+  // Entries unused for more than `protected_for` are evicted first, whatever the weights of their holders.
   explicit FairShares(Clock::duration protected_for, std::function<Clock::time_point()> now = Clock::now)
       : protected_for_(protected_for), now_(std::move(now)) {}
   FairShares(const FairShares&) = delete;
 
-  // Makes the client a holder of the entry with that rank, which counts as a use. A new entry has weight 0.
+  // Makes the client a holder of the entry with this rank, and records a use. A new entry has weight 0.
   void hold(const std::string& id, const std::string& client, Rank rank = 0);
   void set_weight(const std::string& id, std::size_t weight);  // REQUIRES: a client holds it
   void touch(const std::string& id);                           // records a use
-  // Releases the entry for the client. Returns whether it was the last holder.
+  // Releases the entry for the client. Returns true if the client was its last holder.
   bool release(const std::string& id, const std::string& client);
-  void erase(const std::string& id);
+  void erase(const std::string& id);  // releases the entry for all clients
 
   bool holds(const std::string& id, const std::string& client) const { return rank(id, client).has_value(); }
-  // Returns the client's rank for the entry, or the highest rank of any client. Returns nullopt if not held.
+  // Returns the rank with which the client holds the entry, or the highest rank of all holders. Returns
+  // nullopt if the entry is not held.
   std::optional<Rank> rank(const std::string& id, const std::string& client) const;
   std::optional<Rank> rank(const std::string& id) const;
   std::vector<std::string> holders(const std::string& id) const;
   std::size_t weight(const std::string& id) const;  // 0 if not held
   std::size_t weight() const { return weight_; }    // all entries, each counted once
 
-  // Limits on eviction: the client and others only give up entries of ranks below these.
+  // Limits on eviction. The client itself loses only entries of ranks below `own`, other clients only entries
+  // of ranks below `others`.
   struct Ranks {
     Rank own = kRanks, others = kRanks;
   };
-  // Evicts entries until the total weight is at most `most` - `more`, as the client is about to add `more`.
-  // Returns the entries that no client holds any more. Returns nullopt and changes nothing if the client
-  // would hold the most and has nothing else to give up.
+  // Releases entries until the total weight is at most `most` - `more`, because the client is about to add
+  // `more`. Returns the entries that no client holds any longer. Returns nullopt and changes nothing if
+  // neither the client nor clients with more weight have enough entries to lose.
   std::optional<std::vector<std::string>> make_room(const std::string& client, std::size_t more,
                                                     std::size_t most, Ranks ranks);
 
  private:
   struct Hold {
     Rank rank;
-    std::uint64_t seen;  // use number in the client's list; may be outdated
+    std::uint64_t seen;  // position in the client's list: a use number, may be outdated
   };
   struct Entry {
     std::size_t weight = 0;
@@ -91,7 +93,7 @@ class FairShares {
   void set_weight_of(Clients::iterator client, std::size_t weight);
   void set_use(Entries::iterator entry, std::uint64_t use, Clock::time_point used);
   void restore(const Loss& loss);
-  // Returns the next hold to give up, or nullopt if the client would hold the most.
+  // Returns the next hold to release, or nullopt if no hold may be released.
   std::optional<Loss> next_loss(const std::string& client, std::size_t more, Ranks ranks);
   std::optional<Loss> longest_unused(Rank below) const;
   std::optional<Loss> least_recently_used(Clients::iterator client, Rank below);

@@ -10,7 +10,7 @@
 
 namespace orrery {
 
-// PNG options for images that are shown once: encoding time matters more than size.
+// PNG options for images that are shown only once, so that encoding time matters more than size.
 inline constexpr PngOptions kFrameOfStream{.level = 1};
 
 // Rendered and encoded image.
@@ -19,7 +19,7 @@ struct Frame {
   RenderStats stats;
   Certificate certificate = {};
   double render_ms = 0, encode_ms = 0;
-  MemoryCharge charge = {};  // for `bytes`, if accounted
+  MemoryCharge charge = {};  // memory charge of `bytes`, if any
 };
 
 // Encodes the film and measures the encoding time.

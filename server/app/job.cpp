@@ -10,7 +10,7 @@
 namespace orrery {
 namespace {
 
-constexpr int kMaxPlanned = 1000;  // steps in the cost estimate; more are sampled evenly
+constexpr int kMaxPlanned = 1000;  // maximum steps in a cost estimate; longer jobs are sampled evenly
 
 }  // namespace
 
@@ -99,7 +99,7 @@ RenderResult Job::try_render(int step, const WorkCancellation& watch) {
   SlotRequest demand = services_.demand_of(scene, asked, spec_.client);
   demand.priority = Priority::batch;
   auto ticket = services_.admission.enter_again(demand, watch.stop());
-  memory_->settle(0);  // returns the grant of earlier steps
+  memory_->settle(0);  // returns the memory granted to earlier steps
   const int tiles = TileGrid(asked.width, asked.height).size();
   {
     const std::lock_guard lock(mutex_);
@@ -112,14 +112,14 @@ RenderResult Job::try_render(int step, const WorkCancellation& watch) {
   RenderControl control{.stop = watch.stop(),
                         .background = true,
                         .max_s = kShareOfBudgets * static_cast<double>(limit_.count()) / work().steps()};
-  const bool has_passes = has_budget(asked.asked);  // their number is unknown
+  const bool has_passes = has_budget(asked.asked);  // their number is not known in advance
   if (!has_passes)
     control.progress = [this, step, rays = expected_rays(scene, asked)](int done, int) {
       count(step, done, rays);
     };
   RenderResult rendered = memory_->run(
       watch.stop(), [&] { return services_.render(ticket, *spec_.scene, asked, work().storage(), control); });
-  if (has_passes) {  // counts the chosen settings, not the search for them
+  if (has_passes) {  // counts the rays of the chosen settings, not of the search
     RenderRequest made;
     static_cast<RenderSettings&>(made) = rendered.budget->settings;
     count(step, tiles, expected_rays(scene, make_plan(scene, made)));
@@ -130,7 +130,7 @@ RenderResult Job::try_render(int step, const WorkCancellation& watch) {
 void Job::count(int step, std::int64_t done, double rays) {
   const std::lock_guard lock(mutex_);
   const std::int64_t tiles = step * tiles_a_step_ + done;
-  if (tiles <= tiles_done_) return;  // counted in an attempt that ran out of memory
+  if (tiles <= tiles_done_) return;  // already counted in an attempt that ran out of memory
   rays_done_ += rays * static_cast<double>(tiles - tiles_done_) / static_cast<double>(tiles_a_step_);
   tiles_done_ = tiles;
   changed_.notify_all();

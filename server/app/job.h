@@ -36,17 +36,17 @@ inline constexpr bool has_ended(JobState state) { return state >= JobState::done
 struct JobStatus {
   JobState state = JobState::waiting;
   int steps = 1, steps_done = 0;           // images
-  std::int64_t tiles = 0, tiles_done = 0;  // all steps; `tiles` is 0 before the first one begins
-  double elapsed_s = 0;                    // since its first slot
-  std::optional<double> remaining_s;       // at the rate so far; nullopt if unknown
-  std::exception_ptr error;                // reason of a failure
+  std::int64_t tiles = 0, tiles_done = 0;  // in all steps; `tiles` is 0 before the first step starts
+  double elapsed_s = 0;                    // since the job got its first slot
+  std::optional<double> remaining_s;       // at the measured rate; nullopt if unknown
+  std::exception_ptr error;                // reason of a failure, or null
 };
 
-// Long work on a thread of its own. Each step waits for a slot in the batch priority. The job keeps its
-// results after its end, but not its scene. Safe from any thread.
+// Long render on its own thread. Each step waits for a slot with batch priority. After its end, the job keeps
+// its results but releases its scene. Thread-safe.
 class Job {
  public:
-  // Called with the bytes of each step's result before it is stored. Throws if there is no room for them.
+  // Called with the size of each result before it is stored. Throws if the result cannot be stored.
   using Room = std::function<void(std::size_t bytes)>;
 
   // The objects in `services` must outlive the job. The job fails with TimedOut after `limit`.
@@ -60,20 +60,20 @@ class Job {
   JobStatus status() const;
   std::optional<Clock::time_point> ended() const;
 
-  // Waits until more than `steps` are done, the job has ended, `until` has passed or `stop` is requested. If
-  // `tiles` is given, also returns once the number of finished tiles differs from it.
+  // Waits until more than `steps` steps are done, the job has ended, `until` has passed or `stop` is
+  // requested. If `tiles` is set, also stops waiting once the number of finished tiles differs from it.
   JobStatus wait(int steps, std::optional<std::int64_t> tiles, Clock::time_point until,
                  const std::stop_token& stop) const;
 
   void cancel();
-  // Joins the thread. REQUIRES: the job has ended; one caller at a time.
+  // Joins the thread. Must not be called concurrently. REQUIRES: the job has ended.
   void release();
 
  private:
   void run();
   Plan plan(int step) const;
   void take(int step, const RenderResult& rendered);
-  double rays_of_all() const;  // estimate for all steps from their plans alone
+  double rays_of_all() const;  // estimated rays of all steps, from their plans
   RenderResult render(int step, const WorkCancellation& watch);
   RenderResult try_render(int step,
                           const WorkCancellation& watch);  // throws LimitExceeded if memory is short
@@ -88,9 +88,9 @@ class Job {
   const RenderServices services_;
   const std::chrono::seconds limit_;
   const Room room_;
-  std::shared_ptr<MemoryAccount> memory_;  // films; the thread resets it at the end
+  std::shared_ptr<MemoryAccount> memory_;  // account of the films; reset at the end
   std::stop_source cancelled_;
-  mutable std::mutex mutex_;  // guards all below
+  mutable std::mutex mutex_;  // guards the members below
   mutable std::condition_variable_any changed_;
   int steps_, steps_done_ = 0;
   JobState state_ = JobState::waiting;

@@ -29,7 +29,7 @@ Jobs::StartResult Jobs::start(JobSpec spec, const std::string& key, const std::s
     throw InputError("", "Idempotency-Key " + key.substr(0, 80) + " is in use for another job");
   }
   require_place(spec.client);
-  constexpr std::size_t kIdBytes = 16;  // unguessable
+  constexpr std::size_t kIdBytes = 16;  // ids cannot be guessed
   const std::string id = random_hex(kIdBytes), client = spec.client;
   auto job = std::make_shared<Job>(id, std::move(spec), services_, limits_.run_time,
                                    [this, id, client](std::size_t bytes) { make_room(id, client, bytes); });
@@ -103,7 +103,7 @@ void Jobs::forget_old() {
   }
 }
 
-// Cancels running jobs; their files stay until they have ended.
+// Cancels the running jobs. They stay in entries_ until they have ended.
 void Jobs::forget(const std::vector<std::string>& ids) {
   for (const std::string& id : ids) {
     bytes_.erase(id);
@@ -123,8 +123,8 @@ void Jobs::make_room(const std::string& id, const std::string& client, std::size
   if (!bytes_.holds(id, client)) throw Cancelled();
   const auto evicted = bytes_.make_room(client, bytes, limits_.bytes, {.own = kUnderWay});
   if (!evicted)
-    throw InputError("", "images of all jobs take more than " + grouped(limits_.bytes) + " bytes (limit " +
-                             grouped(limits_.bytes) + ", job_bytes)");
+    throw InputError(
+        "", "images of all jobs take too many bytes (limit " + grouped(limits_.bytes) + ", job_bytes)");
   evictions_ += evicted->size();
   forget(*evicted);
   bytes_.set_weight(id, bytes_.weight(id) + bytes);

@@ -55,7 +55,8 @@ bool LineWriter::wait_until_writable(Clock::time_point until) const {
   }
 }
 
-// Writes at most PIPE_BUF bytes at once: a ready pipe, socket or terminal accepts that many.
+// Writes at most PIPE_BUF bytes per call. A ready pipe, socket or terminal accepts that many without
+// blocking.
 void LineWriter::write_rest() {
   constexpr std::chrono::milliseconds kPatience{100};
   const auto now = Clock::now();

@@ -65,14 +65,14 @@ ordered_json cut(ordered_json fields) {
   return fields;
 }
 
-// Blocks all signals, which other threads handle.
+// Blocks all signals on the calling thread. Other threads handle them.
 void block_signals() {
   sigset_t all;
   sigfillset(&all);
   pthread_sigmask(SIG_BLOCK, &all, nullptr);
 }
 
-// Returns the rest of a line, after its time and level.
+// Returns the part of a line after its time and level.
 std::string line_of(LogForm form, std::string_view event, const ordered_json& fields) {
   if (form == LogForm::text) return without_c1(text_of(event, fields));
   ordered_json line = {{"event", event}};
@@ -86,7 +86,7 @@ std::string line_of(LogForm form, std::string_view event, const ordered_json& fi
 // Writes lines on the log's thread.
 class Log::Sink final : public spdlog::sinks::base_sink<std::mutex> {
  public:
-  // `queue`: thread pool that calls this sink. Must outlive its thread.
+  // `queue`: thread pool that calls this sink and counts the lines dropped from its queue.
   Sink(LogForm form, int fd, spdlog::details::thread_pool& queue) : form_(form), queue_(queue), writer_(fd) {}
 
   std::uint64_t dropped() const { return not_written_ + queue_.overrun_counter(); }
@@ -118,7 +118,7 @@ class Log::Sink final : public spdlog::sinks::base_sink<std::mutex> {
   spdlog::details::thread_pool& queue_;
   LineWriter writer_;
   std::atomic<std::uint64_t> not_written_{0};
-  std::uint64_t reported_ = 0;  // dropped lines reported so far
+  std::uint64_t reported_ = 0;  // dropped lines already reported
 };
 
 Log::Log(LogForm form, LogLevel lowest, int fd) : form_(form) {

@@ -19,9 +19,9 @@ namespace orrery {
 enum class LogForm { json, text };
 enum class LogLevel { debug, info, warning, error };
 
-// Log on standard error, with one event per line, as JSON or as text. A thread of its own writes the lines,
-// so callers never wait for the reader. Lines are dropped if the queue is full, or if the reader has stalled
-// or is gone. The next written line follows a line with the number of dropped lines. Safe from any thread.
+// Log with one event per line, as JSON or as text. A separate thread writes the lines, so callers never wait
+// for the reader. Lines are dropped if the queue is full, or if the reader has stalled or is gone. The number
+// of dropped lines is logged before the next line. Thread-safe.
 class Log {
  public:
   Log(LogForm form, LogLevel lowest, int fd = STDERR_FILENO);
@@ -29,7 +29,7 @@ class Log {
   ~Log();
   Log(const Log&) = delete;
 
-  // Writes a line. `fields` is an object; its members follow time, level and event.
+  // Queues a line. `fields` is a JSON object, whose members follow time, level and event.
   void write(LogLevel level, std::string_view event, const nlohmann::ordered_json& fields) const;
 
   std::uint64_t dropped() const;  // lines, since the start

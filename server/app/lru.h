@@ -10,8 +10,8 @@
 
 namespace orrery {
 
-// Size-limited cache of values by id, held by clients. FairShares selects the values to evict. Values are
-// shared pointers, so an evicted value lives as long as it is used. Safe from any thread.
+// Size-limited cache of values, which are keyed by id and held by clients. FairShares selects the values to
+// evict. Values are shared pointers, so an evicted value lives as long as it is used. Thread-safe.
 template <class Value>
 class Lru {
  public:
@@ -22,8 +22,8 @@ class Lru {
     Value value;
     bool known;  // it was already stored
   };
-  // Returns the stored value, or stores make(). The client holds the value from now on. Returns nullopt if
-  // others leave no room and the client would hold the most with this value alone. REQUIRES: bytes <=
+  // Returns the value stored under `id`, or stores make() with a weight of `bytes`. Makes the client a
+  // holder. Returns nullopt if the value cannot be stored; see FairShares::make_room(). REQUIRES: bytes <=
   // max_bytes().
   template <class Make>
   std::optional<AddResult> add(const std::string& id, const std::string& client, std::size_t bytes,
@@ -75,7 +75,7 @@ class Lru {
 
  private:
   const std::size_t max_bytes_;
-  mutable std::mutex mutex_;  // guards all below
+  mutable std::mutex mutex_;  // guards the members below
   std::map<std::string, Value> values_;
   FairShares shares_;
   std::uint64_t evictions_ = 0;

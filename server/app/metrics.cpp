@@ -30,13 +30,14 @@ struct Metrics::Families {
           .Name("orrery_request_seconds")
           .Help("Time from the first byte of a request to the last byte of its response")
           .Register(registry);
-  prometheus::Family<Counter>& refusals = prometheus::BuildCounter()
-                                              .Name("orrery_refusals_total")
-                                              .Help("Rejected requests by limit, or draining during shutdown")
-                                              .Register(registry);
+  prometheus::Family<Counter>& refusals =
+      prometheus::BuildCounter()
+          .Name("orrery_rejected_requests_total")
+          .Help("Rejected requests by exceeded limit, or draining during shutdown")
+          .Register(registry);
   Counter& sent_bytes = prometheus::BuildCounter()
                             .Name("orrery_sent_bytes_total")
-                            .Help("Bytes of responses with their headers")
+                            .Help("Bytes sent in responses, including headers")
                             .Register(registry)
                             .Add({});
   Counter& clients_left = prometheus::BuildCounter()

@@ -10,7 +10,7 @@
 
 namespace orrery {
 
-// Request counters and their text for Prometheus. Safe from any thread.
+// Request counters and their text for Prometheus. Thread-safe.
 class Metrics {
  public:
   Metrics();
@@ -21,10 +21,10 @@ class Metrics {
   void count_request(std::string_view route, std::string_view method, int status, double seconds,
                      std::uint64_t bytes, bool client_left);
 
-  // Counts a rejected request. `reason`: name of the limit, or "draining" if the service is ending.
+  // Counts a rejected request. `reason`: name of the exceeded limit, or "draining" during shutdown.
   void count_refusal(std::string_view reason);
 
-  // Returns these counters and `more` in Prometheus' text format, version 0.0.4.
+  // Returns these counters and `more` in the Prometheus text format, version 0.0.4.
   std::string text(std::vector<prometheus::MetricFamily> more) const;
 
  private:

@@ -38,7 +38,7 @@ ordered_json option_schemas() {
     if (option.in_scene && !option.by_technique)
       description += " Default: that of the scene, else " + option.text(default_settings()) + ".";
     if (!option.changes_pixels) description += " Does not change pixels.";
-    if (schema.contains("$ref")) {  // only the request schema has the shared definitions
+    if (schema.contains("$ref")) {  // only the request schema contains the shared definitions
       const std::string reference = schema["$ref"];
       schema.erase("$ref");
       schema.update(request.at(ordered_json::json_pointer(reference.substr(1))));

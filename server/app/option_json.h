@@ -7,7 +7,7 @@
 // Render options as JSON objects for responses.
 namespace orrery {
 
-// Returns {key: value} for the options of a section, or for all options. REQUIRES: these options are set.
+// Return {key: value} for the options of a section, or for all options. REQUIRES: these options are set.
 nlohmann::ordered_json section_json(const RenderSettings& settings, Section section);
 nlohmann::ordered_json options_json(const RenderSettings& settings);
 

@@ -15,11 +15,11 @@
 
 namespace orrery {
 
-inline constexpr double kLongestStep_s = 3600;  // motion time per frame
+inline constexpr double kLongestStep_s = 3600;  // maximum motion time per frame
 
-// Camera path around a scene, while the motion of the scene repeats.
+// Camera orbit around a scene whose motion plays in a loop.
 struct OrbitPath {
-  RenderRequest first;      // first frame; all options set, except those its budget chooses
+  RenderRequest first;      // first frame; all options are set except those that its budget chooses
   TimeSpan motion;          // time span of the scene's motion
   double step_degrees = 3;  // azimuth per frame
   double step_seconds = 0;  // motion time per frame
@@ -33,7 +33,7 @@ struct OrbitPath {
   double azimuth_degrees(std::int64_t frame) const {
     return *first.azimuth_degrees + static_cast<double>(frame) * step_degrees;
   }
-  // Sets the settings of all later frames to those of the first one. Keeps the error space.
+  // Uses `settings`, those of the rendered first frame, for all later frames. Keeps the error space.
   void continue_with(const RenderSettings& settings) {
     const std::optional<Space> space = first.space;
     static_cast<RenderSettings&>(first) = settings;
@@ -41,7 +41,8 @@ struct OrbitPath {
   }
 };
 
-// Returns one full turn in `frames` frames, during which the rest of the scene's motion plays.
+// Returns a full turn in `frames` frames. Meanwhile, the motion of the scene plays from the time of `first`
+// to its end.
 inline OrbitPath full_turn(const Scene& scene, const RenderRequest& first, int frames) {
   OrbitPath path{first, scene.motion, 360.0 / frames};
   const RenderSettings all = resolve(scene, first);
@@ -52,8 +53,7 @@ inline OrbitPath full_turn(const Scene& scene, const RenderRequest& first, int f
   return path;
 }
 
-// Throws InputError with the pointer of the step if the azimuth of the last frame exceeds the limit for an
-// image.
+// Throws InputError at `step_pointer` if the azimuth of the last frame exceeds the limit of an image.
 inline void require_range(const OrbitPath& path, int frames, std::string_view step_pointer) {
   const double azimuth = path.azimuth_degrees(frames - 1);
   if (!(std::abs(azimuth) <= kMaxOrbitDegrees))
@@ -67,7 +67,7 @@ struct OrbitSpec {
   std::shared_ptr<const PreparedScene> scene;
   OrbitPath path;
   int frames = 120;
-  double fps = 30;     // maximum; 0: as fast as the fastest viewer reads
+  double fps = 30;     // maximum frames per second; 0: as fast as the fastest viewer reads
   std::string key;     // equal for equal orbits
   std::string client;  // client that requested it first
 };

@@ -9,7 +9,7 @@
 namespace orrery {
 namespace {
 
-constexpr std::int64_t kAhead = 3;        // frames rendered ahead of the mailboxes
+constexpr std::int64_t kAhead = 3;        // maximum frames rendered ahead of delivery
 constexpr double kLongestPeriod_s = 1e6;  // a clock overflows after 292 years
 
 }  // namespace
@@ -133,7 +133,7 @@ RenderResult OrbitBroadcast::try_render(const Plan& plan, const std::stop_token&
   SlotRequest demand = services_.demand_of(spec_.scene->scene(), plan, spec_.client);
   demand.subscribers = subscribers_;
   auto ticket = services_.admission.enter_again(demand, stop);
-  memory_->settle(0);  // returns the grant of earlier frames
+  memory_->settle(0);  // returns the memory granted to earlier frames
   return memory_->run(
       stop, [&] { return services_.render(ticket, *spec_.scene, plan, FilmStorage::srgb8, {.stop = stop}); });
 }

@@ -12,10 +12,10 @@
 
 namespace orrery {
 
-// Renders an orbit once for all its viewers. Frames repeat in a circle with increasing numbers. Each viewer
-// gets one orbit, starting with the frame shown when it joins. A viewer has a mailbox for one frame: a newer
-// frame replaces one that was not fetched in time. Rendering pauses while all mailboxes are full. It then
-// resumes at the next frame if fps is 0, else at the frame that is due.
+// Renders an orbit once for all its viewers. The frames repeat cyclically, and their numbers keep increasing.
+// Each viewer gets one full orbit, which starts with the latest frame when it joins. A viewer has a mailbox
+// for one frame. A newer frame replaces a frame that was not fetched in time. Rendering pauses while all
+// mailboxes are full. It resumes at the next frame if fps is 0, otherwise at the frame that is due.
 class OrbitBroadcast {
  public:
   // `frame_time`: time limit for one frame.
@@ -26,14 +26,14 @@ class OrbitBroadcast {
   bool is_watched_by(const std::string& client) const;
 
   class Viewer;
-  // Adds a viewer. Returns null once the orbit is ending. Each frame is queued at the earliest position of
-  // any viewer's client.
+  // Adds a viewer. Returns null once the orbit is ending. Each frame has the earliest virtual finish time of
+  // all viewers' clients; see Admission.
   static std::unique_ptr<Viewer> join(const std::shared_ptr<OrbitBroadcast>& cast, const std::string& client);
 
  private:
   struct Mailbox {
     std::string client;
-    std::int64_t begin, end;  // numbers of this viewer's frames
+    std::int64_t begin, end;  // numbers of the viewer's frames: [begin, end)
     std::shared_ptr<const OrbitFrame> frame;
     std::int64_t number = 0;   // number of `frame`
     std::int64_t fetched = 0;  // number of fetched frames
@@ -53,25 +53,25 @@ class OrbitBroadcast {
 
   const OrbitSpec spec_;
   const RenderServices services_;
-  const std::shared_ptr<MemoryAccount> memory_;  // films; encoded frames have another account
+  const std::shared_ptr<MemoryAccount> memory_;  // account of films; encoded frames have another one
   const std::shared_ptr<Subscribers> subscribers_ = std::make_shared<Subscribers>();
   const std::chrono::seconds frame_time_;
-  std::stop_source nobody_watches_;  // requested when the last viewer leaves
-  mutable std::mutex mutex_;         // guards all below
+  std::stop_source nobody_watches_;  // requested when the last viewer disconnects
+  mutable std::mutex mutex_;         // guards the members below
   std::condition_variable_any changed_;
   std::list<Mailbox> mailboxes_;
   std::int64_t next_ = 0;  // number of the frame to render next
   std::deque<std::pair<std::int64_t, std::shared_ptr<const OrbitFrame>>> finished_;  // not yet delivered
-  std::int64_t delivered_ = 0;                // earlier frames are posted or skipped
+  std::int64_t delivered_ = 0;                // number of the last posted frame, plus 1
   std::shared_ptr<const OrbitFrame> latest_;  // last delivered frame, or null
-  Clock::time_point start_;                   // due time of frame 0; moves on if rendering is slower than fps
-  bool closed_ = false;                       // no more frames will be rendered
-  bool over_ = false;                         // no more frames will be delivered
-  std::exception_ptr failure_;                // error that ended rendering
-  std::thread thread_;                        // last: uses the members above
+  Clock::time_point start_;     // due time of frame 0; postponed if rendering is slower than fps
+  bool closed_ = false;         // no more frames will be rendered
+  bool over_ = false;           // no more frames will be delivered
+  std::exception_ptr failure_;  // error that ended rendering
+  std::thread thread_;          // last: uses the members above
 };
 
-// Viewer of an orbit. For one thread.
+// Viewer of an orbit. Not thread-safe.
 class OrbitBroadcast::Viewer {
  public:
   ~Viewer();
@@ -80,7 +80,7 @@ class OrbitBroadcast::Viewer {
   // Waits for the newest unseen frame and returns it. Returns null at the end of the orbit, when the service
   // ends, or once `gone` is requested. Throws the error that ended rendering, such as TimedOut.
   std::shared_ptr<const OrbitFrame> next(const std::stop_token& gone);
-  // Returns the number of frames that this viewer missed, up to the last fetched frame.
+  // Returns the number of frames before the last fetched frame that this viewer missed.
   std::int64_t skipped() const { return skipped_; }
   // Returns whether the last fetched frame was the final one.
   bool at_end() const { return at_end_; }

@@ -9,8 +9,8 @@
 
 namespace orrery {
 
-// Error bounds of the frames of an orbit, and its budget if there is one. The first frame is rendered within
-// the budget. Later frames use the settings of the first one, so the quality stays constant.
+// Error bounds of the frames of an orbit, and the outcome of its budget, if any. The first frame is rendered
+// within the budget. Later frames use the settings of the first frame, so that the quality stays constant.
 class OrbitBudget {
  public:
   explicit OrbitBudget(int frames) : frames_(static_cast<std::size_t>(frames)) {}
@@ -24,8 +24,8 @@ class OrbitBudget {
   nlohmann::ordered_json bound_json(int frame) const;
   // Returns budget_json() of the first frame with "plan", "frames_met" and "largest_bound", or null without a
   // budget. "plan" is the query of the first frame's plan. "frames_met" is the number of frames whose bound
-  // is within the error budget, null if there is none. "largest_bound" is the largest RMS bound, null if a
-  // frame has none.
+  // is within the error budget, or null without an error budget. "largest_bound" is the largest RMS bound, or
+  // null if the bound of a frame is unknown.
   nlohmann::ordered_json json(int frames) const;
 
  private:

@@ -18,7 +18,7 @@ std::unique_ptr<OrbitBroadcast::Viewer> OrbitRegistry::watch(const OrbitSpec& sp
     const auto cast = known.lock();
     return cast && cast->is_watched_by(spec.client);
   });
-  Quota{.noun = "orbit", .state = "streaming", .limit = "orbits", .most = max_, .retry_s = 5}
+  Quota{.noun = "orbit", .state = "streaming", .limit = "max_orbit_streams", .most = max_, .retry_s = 5}
       .require_one_more(static_cast<int>(casts_.size()), static_cast<int>(own));
   const auto cast = std::make_shared<OrbitBroadcast>(spec, services_, frame_time_);
   casts_.push_back(cast);

@@ -8,17 +8,17 @@
 
 namespace orrery {
 
-// Registry of the orbits that have viewers. Safe from any thread.
+// Registry of the orbits that have viewers. Thread-safe.
 class OrbitRegistry {
  public:
   OrbitRegistry(const RenderServices& services, int max_orbits, std::chrono::seconds frame_time)
       : services_(services), max_(max_orbits), frame_time_(frame_time) {}
 
-  // Joins the viewers of an equal orbit, or starts a new one. Throws LimitExceeded if there are too many
-  // orbits, ClientLimitExceeded if too many of them are this client's.
+  // Adds a viewer to an orbit with the same key, or to a new orbit. Throws LimitExceeded if there are too
+  // many orbits, or ClientLimitExceeded if the client watches too many of them.
   std::unique_ptr<OrbitBroadcast::Viewer> watch(const OrbitSpec& spec);
 
-  std::size_t count();  // number of different orbits with viewers
+  std::size_t count();  // number of distinct orbits with viewers
 
  private:
   void forget_ended();  // REQUIRES: mutex_ is held

@@ -6,7 +6,8 @@ namespace orrery {
 
 namespace {
 
-// Size of an image that missed its budget. It exceeds the cache, because a later request may have more time.
+// Size reported for an image that missed its budget. It exceeds every cache, so the image is not cached: a
+// later request may have more time.
 constexpr std::size_t kTooMany = std::numeric_limits<std::size_t>::max() / 2;
 
 }  // namespace

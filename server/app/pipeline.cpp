@@ -9,9 +9,9 @@
 namespace orrery {
 namespace {
 
-constexpr std::int64_t kUnderWay = 3;  // frames in memory: one in rendering, two in encoding
+constexpr std::int64_t kUnderWay = 3;  // maximum frames in memory: one being rendered, two being encoded
 
-// Frames between rendering and delivery. They are encoded in parallel and delivered in order.
+// Queue of frames between rendering and delivery. Frames are encoded in parallel and delivered in order.
 class Line {
  public:
   explicit Line(const Pipeline& pipeline)
@@ -54,7 +54,8 @@ class Line {
     std::exception_ptr error;
   };
 
-  // Encodes a frame. If memory is short, frames below 32 MiB are still kept, and the next render waits.
+  // Encodes a frame. If memory is short, a frame below 32 MiB is still kept, and the next render waits for
+  // memory.
   Frame encode(RenderResult&& rendered, double render_ms) const {
     const TaskScope scope({nullptr, &pipeline_.stop});
     Frame frame = encode_frame(std::move(rendered), render_ms, pipeline_.encode);
@@ -91,11 +92,11 @@ class Line {
   }
 
   const Pipeline& pipeline_;
-  const std::shared_ptr<MemoryAccount> memory_;  // encoded frames; the films have another account
-  std::mutex mutex_;                             // guards all below
+  const std::shared_ptr<MemoryAccount> memory_;  // account of encoded frames; films have another one
+  std::mutex mutex_;                             // guards the members below
   std::condition_variable changed_;
   std::int64_t entered_ = 0, left_ = 0;
-  std::map<std::int64_t, Encoded> waiting_;  // by position, until earlier frames leave
+  std::map<std::int64_t, Encoded> waiting_;  // by position, until all earlier frames are delivered
   std::exception_ptr error_;
 };
 

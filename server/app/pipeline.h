@@ -9,9 +9,9 @@
 
 namespace orrery {
 
-// Sequence of frames, each rendered while earlier ones are encoded. `next` and `render` run on the caller's
-// thread and may wait. `encode` and `deliver` run on pool threads and must not wait. The pool therefore has
-// work from the first frame to the last, and shares the cores with no other threads.
+// Renders a sequence of frames while earlier frames are encoded. `next` and `render` run on the caller's
+// thread and may block. `encode` and `deliver` run on pool threads and must not block. The pool is therefore
+// busy from the first frame to the last, without further compute threads.
 struct Pipeline {
   WorkerPool& pool;
   bool background;                                    // yields to other work

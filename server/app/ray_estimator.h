@@ -10,17 +10,17 @@
 
 namespace orrery {
 
-// Estimates the number of rays of renders, and learns from finished ones. Safe from any thread.
+// Estimates the number of rays of renders, and learns from finished ones. Thread-safe.
 class RayEstimator {
  public:
   // Returns the estimated rays of all kinds: expected_rays() of the plan times a learned factor. Renders of a
-  // scene with the same technique, depth and least contribution share a factor, whatever their size, samples
-  // and camera. It starts at 1 and stays within 1/8 and 8, because a client's renders affect the estimates of
-  // others.
+  // scene with the same technique, max_depth and min_contribution share a factor, whatever their size,
+  // samples and camera. The factor starts at 1. It stays in [1/8, 8], because the renders of one client
+  // affect the estimates of others.
   double estimate(const Scene& scene, const Plan& plan);
-  // Learns from a complete render of the plan that traced `rays`. The first render sets the factor. Later
-  // ones move it half of the way, because orbits change the view. An image of fewer than 4,096 camera rays
-  // moves the factor proportionally less.
+  // Learns from a complete render of the plan that traced `rays`. The first render sets the factor to the
+  // ratio of traced to expected rays. A later render moves the factor halfway to its own ratio, because the
+  // view changes along an orbit. An image with fewer than 4,096 camera rays moves it proportionally less.
   void learn(const Scene& scene, const Plan& plan, std::uint64_t rays);
 
  private:

@@ -44,14 +44,14 @@ std::optional<Refinement::Step> Refinement::next(const std::stop_token& gone) {
     next_ = pass + 1;
     return step;
   } catch (const Cancelled&) {
-    ++services_.meters.given_up[static_cast<std::size_t>(stage)];
+    ++services_.meters.cancelled[static_cast<std::size_t>(stage)];
     watch.explain();
   }
 }
 
 Refinement::Step Refinement::render(int samples, const std::stop_token& stop, Stage& stage) {
   const Scene& scene = spec_.scene->scene();
-  Plan pass = spec_.plan;  // for its cost
+  Plan pass = spec_.plan;  // for the cost of this pass
   pass.samples = samples - done_;
   const SlotRequest demand = services_.demand_of(scene, pass, spec_.client);
   auto ticket =
@@ -83,6 +83,7 @@ Refinement::Step Refinement::render(int samples, const std::stop_token& stop, St
   step.encode_ms = milliseconds_since(start);
   step.picture = std::make_shared<const Picture>(std::move(picture));
   pictures_.keep(key_of(samples), spec_.client, step.picture);
+  ++services_.meters.films_made;
   ++services_.meters.pictures_made;
   return step;
 }

@@ -11,7 +11,7 @@
 
 namespace orrery {
 
-// Progressive render and its client.
+// Parameters of a progressive render.
 struct RefinementSpec {
   std::shared_ptr<const PreparedScene> scene;
   RenderRequest request;
@@ -19,9 +19,9 @@ struct RefinementSpec {
   std::string client;
 };
 
-// Progressive render of one image. Each pass adds samples, and returns the same PNG as one render with all
-// samples so far. No sample is traced twice. Each pass waits for a slot of its own. Only the film is held
-// between passes. For one thread.
+// Progressive render of one image. Each pass adds samples and returns the same PNG as a single render with
+// that many samples. No sample is traced twice. Each pass waits for its own slot. No slot is held between
+// passes. Not thread-safe.
 class Refinement {
  public:
   // Image after a pass.
@@ -38,12 +38,13 @@ class Refinement {
 
   const Scene& scene() const { return spec_.scene->scene(); }
   const Plan& plan() const { return spec_.plan; }
-  // Returns whether the final image is cached. It is then the only step, and nothing is rendered.
+  // Returns whether the final image is cached. If so, it is the only step, and nothing is rendered.
   bool is_known() const { return known_ != nullptr; }
   bool at_end() const { return next_ == samples_.size(); }
 
-  // Returns the next image, or nullopt after the last one and while draining. Throws as App::render(), except
-  // that only the first pass is rejected if too much work is queued. Returns nullopt after an exception.
+  // Returns the next image, or nullopt after the last image and after an exception. While draining, only the
+  // first image is returned. Throws the errors of App::render(), but later passes are not rejected if the
+  // queue is full.
   std::optional<Step> next(const std::stop_token& gone);
 
  private:

@@ -23,7 +23,7 @@ std::vector<std::string> split(const std::string& text) {
   return parts;
 }
 
-// Returns text that is not a number unchanged, so that the reader rejects it with a message.
+// Returns the number, or the text itself if it is not a number, so that the reader reports it.
 nlohmann::json number_of(const std::string& text) {
   if (const auto whole = parse_number<std::int64_t>(text)) return *whole;  // a double would round it
   if (const auto number = parse_number<double>(text); number && std::isfinite(*number)) return *number;

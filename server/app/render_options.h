@@ -11,10 +11,10 @@
 #include "core/plan/request.h"
 #include "server/http/message.h"
 
-// Render options as names and texts, from queries and command lines.
+// Render options given as names and texts, in queries and on command lines.
 namespace orrery {
 
-// Returns the option with that name or short name, or null if there is none.
+// Returns the option with this name or short name, or null if the name is unknown.
 const RenderOption* find_render_option(std::string_view name);
 // Returns all names and short names.
 std::vector<std::string_view> render_option_names();
@@ -31,8 +31,8 @@ std::vector<OptionText> option_texts(const Fields& query,
                                      const std::function<std::string(std::string_view)>& called,
                                      std::span<const std::string_view> more = {});
 
-// Parses the options. The values of a list are separated by commas. Throws InputError as read_request(), but
-// with the given names.
+// Parses the options. The values of a list are separated by commas. Throws the errors of read_request(), with
+// `given_as` as their place.
 RenderRequest read_option_texts(std::span<const OptionText> texts);
 
 }  // namespace orrery

@@ -13,7 +13,8 @@
 
 namespace orrery {
 
-// Share of the time limit that a budget may use. The rest is for returning the best image so far.
+// Fraction of the time limit that a budget may use. The remainder is for encoding and returning the best
+// image.
 inline constexpr double kShareOfBudgets = 0.9;
 
 // Services that all renders share. They must outlive every render that uses them.
@@ -27,7 +28,7 @@ struct RenderServices {
   RayEstimator& estimator;
   WorkMemory& memory;
   SceneStore& scenes;
-  double interactive_rays;  // limit for a frame in the interactive lane
+  double interactive_rays;  // maximum cost of a frame with interactive priority, in usual rays
 
   // Returns the slot request for a frame. Its cost is the estimate in usual rays plus kFixedCost. The frame
   // is batch work if either the plan alone or the learned estimate exceeds interactive_rays.
@@ -37,8 +38,8 @@ struct RenderServices {
     return {small ? Priority::interactive : Priority::batch, client, kFixedCost + weight * rays};
   }
 
-  // Returns render(). If it throws LimitExceeded because other work holds the memory, waits and calls it
-  // again. Throws its other errors, and Cancelled once `stop` is requested.
+  // Returns render(). If render() throws LimitExceeded because other work holds the memory, waits and calls
+  // it again. Throws the other errors of render(), and Cancelled once `stop` is requested.
   template <class Render>
   RenderResult retry_while_out_of_memory(const std::stop_token& stop, const Render& render) const {
     for (;;) try {
@@ -49,7 +50,7 @@ struct RenderServices {
   }
 
   // Renders a frame in the slot of `ticket`. Reports the measured cost to the ticket and the size of the
-  // scene to the store. Throws Cancelled.
+  // scene to the store. Throws the errors of render_frame().
   RenderResult render(Admission::Ticket& ticket, const PreparedScene& scene, const Plan& plan,
                       FilmStorage storage, const RenderControl& control) const {
     RenderControl shared = control;

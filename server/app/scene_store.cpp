@@ -28,7 +28,7 @@ SceneStore::KeepResult SceneStore::keep(const Document& document, const AssetSou
   const Prepared scene = find_or_load(id, document, assets, client);
   if (scene->loaded_bytes() > max_)
     throw InputError("", "scene takes " + grouped(scene->loaded_bytes()) + " bytes of memory (limit " +
-                             grouped(max_) + ", store_bytes)");
+                             grouped(max_) + ", scene_cache_bytes)");
   const std::lock_guard lock(mutex_);
   if (Prepared known = find_locked(id)) {
     const bool was_kept = is_kept(id);
@@ -38,8 +38,8 @@ SceneStore::KeepResult SceneStore::keep(const Document& document, const AssetSou
   if (add(scene, client, kKept)) return {scene, false};
   constexpr double kRetry_s = 30;
   throw LimitExceeded("scenes of other clients leave no room for " + grouped(scene->loaded_bytes()) +
-                          " more bytes (limit " + grouped(max_) + ", store_bytes)",
-                      kRetry_s, "store_bytes");
+                          " more bytes (limit " + grouped(max_) + ", scene_cache_bytes)",
+                      kRetry_s, "scene_cache_bytes");
 }
 
 SceneStore::Prepared SceneStore::get(const Document& document, const AssetSource& assets,
@@ -151,8 +151,8 @@ bool SceneStore::make_room(const std::string& client, std::size_t bytes, FairSha
   return true;
 }
 
-// Updates the weight of a scene. A cached scene includes its structures. Those of a kept scene are a separate
-// entry, which can be evicted alone.
+// Updates the weight of a scene in shares_. The weight of a cached scene includes its structures. The
+// structures of a kept scene are a separate entry, so that they can be evicted alone.
 void SceneStore::weigh(const std::string& id) {
   const Entry& entry = scenes_.at(id);
   const std::size_t loaded = entry.scene->loaded_bytes();

@@ -16,12 +16,12 @@
 
 namespace orrery {
 
-// Scenes by id, the hash of the document, with the structures built for rendering. Some scenes are kept on
-// request; others were only rendered and are cached. Both are held by the clients that posted them.
-// FairShares selects the client that gives up entries. It gives up cached scenes first, then the structures
-// of kept scenes. Kept scenes are evicted only for other kept scenes, so a client that may only render cannot
-// evict them. The store accounts for the memory of a stored scene. Before it is stored and after it is
-// removed, its memory is charged to the client's work. Safe from any thread.
+// Store of scenes with their acceleration structures, keyed by the hash of the document. A scene is kept if a
+// client stored it, and cached if clients only rendered it. Each scene is held by the clients that posted it.
+// FairShares selects the client that loses entries: first cached scenes, then the structures of kept scenes.
+// A kept scene is evicted only for another kept scene, so that clients without the scope write cannot evict
+// it. The memory of a stored scene is charged to the store. Before the scene is stored and after it is
+// removed, its memory is charged to the work that uses it. Thread-safe.
 class SceneStore {
  public:
   using Prepared = std::shared_ptr<const PreparedScene>;
@@ -34,21 +34,22 @@ class SceneStore {
     Prepared scene;
     bool known = false;  // it was already kept
   };
-  // Keeps the scene of `document`. Loads it only if it is not stored, not even as a cached scene. Throws as
-  // load_scene() and WorkMemory::open(), InputError if the scene alone exceeds the limit, and LimitExceeded
-  // if other clients leave no room.
+  // Keeps the scene of `document`. Loads it only if it is not stored, not even as a cached scene. Throws the
+  // errors of load_scene() and WorkMemory::open(). Throws InputError if the scene alone exceeds the limit,
+  // and LimitExceeded if scenes of other clients leave too few bytes.
   KeepResult keep(const Document& document, const AssetSource& assets, const std::string& client);
-  // Returns the scene of `document`. Loads it only if it is not stored, and then caches it if there is room.
-  // Throws as load_scene() and WorkMemory::open().
+  // Returns the scene of `document`. Loads it only if it is not stored, and then caches it if it fits. Throws
+  // the errors of load_scene() and WorkMemory::open().
   Prepared get(const Document& document, const AssetSource& assets, const std::string& client);
 
-  // Returns a kept or cached scene. Throws NotFound.
+  // Returns a kept or cached scene. Throws NotFound if it is not stored.
   Prepared find(const std::string& id);
   // Releases the scene for the client, or with `of_all` for all clients. Removes it once no client holds it.
   // Throws NotFound, or HttpError 403 if only other clients hold it.
   void remove(const std::string& id, const std::string& client, bool of_all);
 
-  // Scope in which structures may be built for the scene. Its end updates the size of the stored scene.
+  // Scope in which acceleration structures of the scene may be built. Its end updates the size of the stored
+  // scene.
   class SizeGuard {
    public:
     SizeGuard(SceneStore& store, const PreparedScene& scene) : store_(store), scene_(scene) {}
@@ -61,7 +62,8 @@ class SceneStore {
   };
 
   std::size_t bytes() const;
-  // Returns the number of scenes requested by document since the start: found in the store, and loaded.
+  // Return the number of scenes requested by document since the start: those found in the store, and those
+  // loaded.
   std::uint64_t hits() const { return hits_; }
   std::uint64_t loads() const { return loads_; }
   std::uint64_t evictions() const { return evictions_; }  // cached and kept scenes
@@ -69,7 +71,7 @@ class SceneStore {
  private:
   struct Entry {
     Prepared scene;
-    std::size_t built = 0;  // bytes at the last measurement
+    std::size_t built = 0;  // bytes of its structures when last measured
   };
 
   Prepared find_or_load(const std::string& id, const Document& document, const AssetSource& assets,
@@ -81,7 +83,7 @@ class SceneStore {
   bool is_kept(const std::string& id) const;
   void hold(const std::string& id, const std::string& client, FairShares::Rank rank);
   bool add(const Prepared& scene, const std::string& client, FairShares::Rank rank);
-  // Evicts entries as FairShares::make_room(). Returns false if the client would hold the most.
+  // Evicts entries. Returns false if FairShares::make_room() returns nullopt.
   bool make_room(const std::string& client, std::size_t bytes, FairShares::Ranks ranks);
   void weigh(const std::string& id);
   static void drop_built(Entry& entry);
@@ -89,9 +91,9 @@ class SceneStore {
 
   const std::size_t max_;
   WorkMemory& work_;
-  mutable std::mutex mutex_;  // guards all below
+  mutable std::mutex mutex_;  // guards the members below
   std::map<std::string, Entry> scenes_;
-  // Entries by id; the structures of a kept scene have an entry of their own.
+  // Entries by id. The structures of a kept scene have a separate entry with the id built_id().
   FairShares shares_{std::chrono::hours(1)};
   std::atomic<std::uint64_t> hits_{0}, loads_{0}, evictions_{0};
 };

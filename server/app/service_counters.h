@@ -10,8 +10,7 @@
 
 namespace orrery {
 
-// Histogram of durations in seconds. Its buckets separate cached, fast and slow renders. Safe from any
-// thread.
+// Histogram of durations in seconds. Its buckets separate cached, fast and slow renders. Thread-safe.
 class SecondsHistogram : public prometheus::Histogram {
  public:
   SecondsHistogram() : Histogram(boundaries()) {}
@@ -24,16 +23,16 @@ class SecondsHistogram : public prometheus::Histogram {
 enum class Stage : std::size_t { read, queue, settle, render, encode };
 inline constexpr std::array<std::string_view, 5> kStages{"read", "queue", "settle", "render", "encode"};
 
-// Counters since the start. Safe from any thread.
+// Counters since the start. Thread-safe.
 struct ServiceCounters {
   const std::chrono::system_clock::time_point started = std::chrono::system_clock::now();
   std::atomic<std::uint64_t> rays{0};
   std::atomic<std::uint64_t> pictures_found{0}, pictures_made{0};  // cached, encoded
-  std::atomic<std::uint64_t> films_found{0};                       // images encoded from a cached film
+  std::atomic<std::uint64_t> films_found{0}, films_made{0};        // cached, rendered
   std::atomic<std::uint64_t> jobs_done{0}, jobs_failed{0}, jobs_cancelled{0};
-  std::array<std::atomic<std::uint64_t>, kStages.size()> given_up{};  // aborted work by stage
-  std::atomic<std::uint64_t> reloads_failed{0};                       // on SIGHUP
-  SecondsHistogram render;                                            // per frame: building and tracing
+  std::array<std::atomic<std::uint64_t>, kStages.size()> cancelled{};  // aborted work by stage
+  std::atomic<std::uint64_t> reloads_failed{0};                        // on SIGHUP
+  SecondsHistogram render;                                             // per frame: building and tracing
 };
 
 }  // namespace orrery

@@ -11,7 +11,7 @@ namespace orrery {
 namespace {
 
 using S = Settings;
-constexpr std::int64_t kMost = 1'000'000'000'000;
+constexpr std::int64_t kMaxLimit = 1'000'000'000'000;
 
 constexpr std::array kSettings{
     Setting{"host", &S::host, "NAME", "Host name or address to listen on"},
@@ -23,8 +23,9 @@ constexpr std::array kSettings{
     Setting{"threads", &S::threads, "N", "Render threads; 0: one per core", 0, 1024},
     Setting{"tokens_file", &S::tokens_file, "FILE",
             "Access tokens, one line of `orrery token` each; reloaded on SIGHUP"},
-    Setting{"share_key_file", &S::share_key_file, "FILE",
-            "Key of at least 32 bytes that signs links (POST /v1/shares); reloaded on SIGHUP"},
+    Setting{"link_signing_key_file", &S::link_signing_key_file, "FILE",
+            "Key of at least 32 bytes that signs links (POST /v1/shares); reloaded on SIGHUP", 0, 0,
+            "share_key_file"},
     Setting{"cors_origins", &S::cors_origins, "ORIGIN,...",
             "Origins whose pages may use the service; *: all. Without tokens, the service's own origin too "
             "if it is a domain"},
@@ -39,38 +40,46 @@ constexpr std::array kSettings{
         "memory_bytes", &S::memory_bytes, "N",
         "Memory limit in bytes; the other byte limits are parts of it, the rest (work_bytes) is for scenes "
         "and images in progress",
-        160'000'000, kMost},
-    Setting{"body_bytes", &S::body_bytes, "N", "Maximum bytes of a request body", 1, 1'000'000'000},
-    Setting{"bodies_bytes", &S::bodies_bytes, "N",
-            "Maximum bytes of all request bodies in transfer; one client: half", 1, kMost},
-    Setting{"answers_bytes", &S::answers_bytes, "N",
-            "Maximum bytes of all responses in transfer; one client: half", 1, kMost},
-    Setting{"store_bytes", &S::store_bytes, "N",
-            "Maximum bytes of cached scenes with their acceleration structures", 1, kMost},
+        160'000'000, kMaxLimit},
+    Setting{"max_request_body_bytes", &S::max_request_body_bytes, "N", "Maximum bytes of a request body", 1,
+            1'000'000'000, "body_bytes"},
+    Setting{"request_buffer_bytes", &S::request_buffer_bytes, "N",
+            "Maximum bytes of all request bodies in transfer; one client: half", 1, kMaxLimit,
+            "bodies_bytes"},
+    Setting{"response_buffer_bytes", &S::response_buffer_bytes, "N",
+            "Maximum bytes of all responses in transfer; one client: half", 1, kMaxLimit, "answers_bytes"},
+    Setting{"scene_cache_bytes", &S::scene_cache_bytes, "N",
+            "Maximum bytes of cached scenes with their acceleration structures", 1, kMaxLimit, "store_bytes"},
     Setting{"asset_bytes", &S::asset_bytes, "N", "Maximum bytes of an asset (mesh or image file)", 1,
             4'000'000'000},
-    Setting{"asset_store_bytes", &S::asset_store_bytes, "N", "Maximum bytes of all stored assets", 1, kMost},
-    Setting{"picture_bytes", &S::picture_bytes, "N", "Maximum bytes of cached images", 0, kMost},
-    Setting{"film_bytes", &S::film_bytes, "N",
-            "Maximum bytes of cached films, for other formats of an image; one film: a quarter", 0, kMost},
+    Setting{"asset_store_bytes", &S::asset_store_bytes, "N", "Maximum bytes of all stored assets", 1,
+            kMaxLimit},
+    Setting{"image_cache_bytes", &S::image_cache_bytes, "N", "Maximum bytes of cached images", 0, kMaxLimit,
+            "picture_bytes"},
+    Setting{"film_cache_bytes", &S::film_cache_bytes, "N",
+            "Maximum bytes of cached films, for other formats of an image; one film: a quarter", 0, kMaxLimit,
+            "film_bytes"},
     Setting{"connections", &S::connections, "N",
             "Maximum open connections; streams: three quarters, streams of one client: half of these", 1,
             10'000},
-    Setting{"renders", &S::renders, "N", "Maximum concurrent work items (slots); 0: two per thread", 0, 1024},
-    Setting{"queue_rays", &S::queue_rays, "N", "Maximum estimated rays of queued work, per lane", 1, kMost},
+    Setting{"max_concurrent_renders", &S::max_concurrent_renders, "N",
+            "Maximum requests that trace rays at once (slots); 0: two per thread", 0, 1024, "renders"},
+    Setting{"max_queued_rays", &S::max_queued_rays, "N",
+            "Maximum estimated rays of the queued requests, per priority", 1, kMaxLimit, "queue_rays"},
     Setting{"interactive_rays", &S::interactive_rays, "N",
-            "Maximum estimated rays of an image in the interactive lane", 1, kMost},
+            "Maximum estimated rays of an image with interactive priority", 1, kMaxLimit},
     Setting{"request_rays", &S::request_rays, "N",
             "Maximum estimated rays of one image, else the request is rejected; 0: 50 million per thread and "
             "second of request_seconds",
-            0, kMost},
-    Setting{"orbits", &S::orbits, "N", "Maximum distinct orbits streamed at once; one client: half", 1,
-            10'000},
+            0, kMaxLimit},
+    Setting{"max_orbit_streams", &S::max_orbit_streams, "N",
+            "Maximum distinct orbits streamed at once; one client: half", 1, 10'000, "orbits"},
     Setting{"orbit_frames", &S::orbit_frames, "N", "Maximum frames of an orbit", 1, 1'000'000},
     Setting{"request_seconds", &S::request_seconds, "N", "Maximum seconds of one image", 1, 1'000'000},
     Setting{"jobs", &S::jobs, "N", "Maximum unfinished jobs; one client: half", 1, 1000},
-    Setting{"jobs_kept", &S::jobs_kept, "N", "Maximum finished jobs that are kept", 1, 1'000'000},
-    Setting{"job_bytes", &S::job_bytes, "N", "Maximum bytes of the images of all jobs", 1, kMost},
+    Setting{"max_finished_jobs", &S::max_finished_jobs, "N", "Maximum finished jobs that are kept", 1,
+            1'000'000, "jobs_kept"},
+    Setting{"job_bytes", &S::job_bytes, "N", "Maximum bytes of the images of all jobs", 1, kMaxLimit},
     Setting{"job_seconds", &S::job_seconds, "N", "Maximum seconds of one job", 1, 1'000'000},
     Setting{"job_kept_seconds", &S::job_kept_seconds, "N", "Seconds that a finished job is kept", 1,
             10'000'000},
@@ -85,8 +94,9 @@ constexpr std::size_t kFirstLimit = 11;
 static_assert(kSettings[kFirstLimit].name == "memory_bytes");
 
 // Memory limits that are parts of memory_bytes.
-constexpr std::array kBudgets{&S::bodies_bytes,  &S::answers_bytes, &S::store_bytes, &S::asset_store_bytes,
-                              &S::picture_bytes, &S::film_bytes,    &S::job_bytes};
+constexpr std::array kBudgets{
+    &S::request_buffer_bytes, &S::response_buffer_bytes, &S::scene_cache_bytes, &S::asset_store_bytes,
+    &S::image_cache_bytes,    &S::film_cache_bytes,      &S::job_bytes};
 
 std::int64_t whole_number(std::string_view text, std::int64_t min, std::int64_t max) {
   constexpr double kMaxExact = 1e15;  // 1e6 is an integer, too
@@ -138,16 +148,18 @@ Settings settings_within(std::size_t memory_bytes) {
   settings.memory_bytes = memory_bytes;
   for (const auto budget : kBudgets)
     settings.*budget = static_cast<std::size_t>(static_cast<double>(settings.*budget) * part);
-  settings.body_bytes = std::min(settings.body_bytes, settings.bodies_bytes);
-  settings.asset_bytes = std::min({settings.asset_bytes, settings.asset_store_bytes, settings.bodies_bytes});
+  settings.max_request_body_bytes = std::min(settings.max_request_body_bytes, settings.request_buffer_bytes);
+  settings.asset_bytes =
+      std::min({settings.asset_bytes, settings.asset_store_bytes, settings.request_buffer_bytes});
   return settings;
 }
 
 std::size_t work_bytes(const Settings& settings) {
   constexpr std::size_t kProgram = 32 << 20, kConnection = 64 << 10, kLeast = 16 << 20;
-  const std::size_t one_body = std::max(settings.body_bytes, settings.asset_bytes);
+  const std::size_t one_body = std::max(settings.max_request_body_bytes, settings.asset_bytes);
   std::size_t others = kProgram + settings.connections * kConnection;
-  if (one_body > settings.bodies_bytes) others += one_body - settings.bodies_bytes;  // one always fits
+  if (one_body > settings.request_buffer_bytes)
+    others += one_body - settings.request_buffer_bytes;  // one always fits
   for (const auto budget : kBudgets) others += settings.*budget;
   if (settings.memory_bytes >= others + kLeast) return settings.memory_bytes - others;
   throw InputError("", "memory_bytes must be at least " + std::to_string(others + kLeast) +

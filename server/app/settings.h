@@ -21,24 +21,24 @@ struct Settings {
 
   // Limits; see limits().
   std::size_t memory_bytes = std::size_t{3} << 30;
-  std::size_t body_bytes = 8 << 20;
-  std::size_t bodies_bytes = 256 << 20;
-  std::size_t answers_bytes = 256 << 20;
-  std::size_t store_bytes = 256 << 20;
+  std::size_t max_request_body_bytes = 8 << 20;
+  std::size_t request_buffer_bytes = 256 << 20;
+  std::size_t response_buffer_bytes = 256 << 20;
+  std::size_t scene_cache_bytes = 256 << 20;
   std::size_t asset_bytes = 64 << 20;
   std::size_t asset_store_bytes = 256 << 20;
-  std::size_t picture_bytes = 64 << 20;
-  std::size_t film_bytes = 128 << 20;
+  std::size_t image_cache_bytes = 64 << 20;
+  std::size_t film_cache_bytes = 128 << 20;
   std::size_t connections = 256;
-  int renders = 0;
-  double queue_rays = 300e6;
+  int max_concurrent_renders = 0;
+  double max_queued_rays = 300e6;
   double interactive_rays = 50e6;
   double request_rays = 0;
-  int orbits = 64;
+  int max_orbit_streams = 64;
   int orbit_frames = 3600;
   std::chrono::seconds request_seconds{60};
   int jobs = 32;
-  int jobs_kept = 1000;
+  int max_finished_jobs = 1000;
   std::size_t job_bytes = 512 << 20;
   std::chrono::seconds job_seconds{3600};
   std::chrono::seconds job_kept_seconds{3600};
@@ -47,7 +47,7 @@ struct Settings {
 
   // Access control. Empty values allow every client that can connect.
   bool insecure = false;  // allow other machines without tokens
-  std::string tokens_file, share_key_file;
+  std::string tokens_file, link_signing_key_file;
   std::vector<std::string> cors_origins;
 
   // Reverse proxy.
@@ -55,8 +55,8 @@ struct Settings {
   std::string path_prefix;
 };
 
-// Setting with one name for flags (--body-bytes), environment (ORRERY_BODY_BYTES), files, /v1/limits and
-// error messages.
+// Setting with one name for flags (--max-request-body-bytes), environment (ORRERY_MAX_REQUEST_BODY_BYTES),
+// files, /v1/limits and error messages.
 struct Setting {
   using Member = std::variant<std::size_t Settings::*, int Settings::*, double Settings::*,
                               std::chrono::seconds Settings::*, bool Settings::*, std::string Settings::*,
@@ -66,6 +66,7 @@ struct Setting {
   std::string_view value;  // placeholder for the value in the help
   std::string_view help;
   std::int64_t min = 0, max = 0;  // range of a number, which must be an integer
+  std::string_view former = "";   // name that stays valid as an alias, except in /v1/limits
 
   // Returns the value in the format of read(). List entries are separated by commas.
   std::string text(const Settings& settings) const;

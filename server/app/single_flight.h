@@ -18,9 +18,9 @@
 
 namespace orrery {
 
-// Cache of values by key that computes a value only once for concurrent requests. Caches values of at most
-// `largest` bytes, and `max_bytes` in total, in the share of the client that a value was made for (see
-// FairShares). The size of a value is std::size_t held_bytes(const Value&). Safe from any thread.
+// Cache that computes a value only once for concurrent requests with the same key. Stores values of at most
+// `largest` bytes, and at most `max_bytes` in total. A value counts for the client that it was made for; see
+// FairShares. std::size_t held_bytes(const Value&) must return the size of a value. Thread-safe.
 template <class Value>
 class SingleFlight {
  public:
@@ -41,12 +41,12 @@ class SingleFlight {
 
   struct LookupResult {
     ValuePtr value;
-    bool made_here;  // by this call; else cached or made by another
+    bool made_here;  // by this call, neither cached nor made by another
   };
-  // Returns the value of `key`. If there is none, calls `make` on this thread, with a token that is stopped
-  // once neither this caller nor later callers wait. Throws the error of `make`, also to the waiting callers.
-  // Busy, Cancelled and TimedOut concern only the caller of `make`; a waiting caller then computes the value.
-  // Throws Cancelled once the client disconnects.
+  // Returns the value of `key`. If the value is neither cached nor in progress, calls `make` on this thread.
+  // The token is stopped once no caller waits. Throws the error of `make`, also to the waiting callers. Busy,
+  // Cancelled and TimedOut are thrown only to the caller of `make`, and a waiting caller then computes the
+  // value. Throws Cancelled once the client disconnects.
   LookupResult get(const std::string& key, const Client& client, const Make& make) {
     for (;;) {
       std::unique_lock lock(mutex_);
@@ -66,7 +66,7 @@ class SingleFlight {
       if (first) return make_for_all(key, client.name, work, make);
       ValuePtr value;
       std::exception_ptr error;
-      {  // unlocks before `leaves` ends, whose callback may wait for mutex_
+      {  // unlocks before the end of `leaves`, whose callback may wait for mutex_
         const HandlerSlots::Wait wait;
         std::unique_lock again(mutex_);
         work->changed.wait(again, client.gone, [&] { return work->done; });
@@ -86,7 +86,7 @@ class SingleFlight {
   }
   // Caches a value that was made elsewhere for the client, as get() would.
   void keep(const std::string& key, const std::string& client, const ValuePtr& value) {
-    constexpr std::size_t kBeside = 4096;  // overhead of the allocator and of the entries
+    constexpr std::size_t kBeside = 4096;  // overhead of the allocator and of the entries, bytes
     const std::size_t bytes = kBeside + key.size() + held_bytes(*value);
     if (bytes <= largest_) kept_.add(key, client, bytes, [&] { return value; });
   }
@@ -153,7 +153,7 @@ class SingleFlight {
   Lru<ValuePtr> kept_;
   const std::size_t largest_;
   mutable std::mutex mutex_;
-  std::map<std::string, InFlightPtr> under_way_;  // guarded by mutex_, as are the entries
+  std::map<std::string, InFlightPtr> under_way_;  // guarded by mutex_, including its elements
 };
 
 }  // namespace orrery

@@ -7,8 +7,8 @@
 
 namespace orrery {
 
-// Returns {"rows": [{"id", "name", "quantity", "unit", "known": {...}, "ours": {...}, "holds"}], "holds": of
-// all}.
+// Returns {"rows": [{"id", "name", "quantity", "unit", "known": {...}, "ours": {...}, "holds"}], "holds"}.
+// The outer "holds" is true if all rows hold.
 nlohmann::ordered_json stability_json(std::span<const StabilityResult> results);
 
 }  // namespace orrery

@@ -8,15 +8,15 @@
 
 namespace orrery {
 
-// Limit on long-lived responses such as event streams. Each holds a connection, and together they may hold
-// three quarters of all connections. Safe from any thread.
+// Limit on long-lived responses such as event streams. Each occupies a connection. Together they may occupy
+// at most three quarters of all connections. Thread-safe.
 class Streams {
  public:
   explicit Streams(std::size_t connections)
       : max_(std::max(1, static_cast<int>(connections - (connections + 3) / 4))) {}
 
-  // Opens a stream for the client, as long as the returned object lives. Throws LimitExceeded or
-  // ClientLimitExceeded if there are too many.
+  // Counts an open stream of the client until the returned object is destroyed. Throws LimitExceeded or
+  // ClientLimitExceeded if too many streams are open.
   std::shared_ptr<const void> open(const std::string& client);
 
  private:

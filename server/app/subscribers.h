@@ -8,10 +8,10 @@
 
 namespace orrery {
 
-// Clients that wait for the same work, once for each request. Guarded by Admission.
+// Clients that wait for the same work, with one element for each request. Guarded by the mutex of Admission.
 using Subscribers = std::multiset<std::string>;
 
-// Subscribers by key, for as long as a caller holds them. Safe from any thread.
+// Subscribers by key, which exist as long as a caller holds them. Thread-safe.
 class SubscribersByKey {
  public:
   std::shared_ptr<Subscribers> of(const std::string& key) {

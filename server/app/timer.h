@@ -11,7 +11,7 @@
 
 namespace orrery {
 
-// Clock with alarms. An interface, so that tests can set the time. Safe from any thread.
+// Clock with alarms. Abstract, so that tests can set the time. Thread-safe.
 class Timer {
  public:
   using Action = std::function<void()>;
@@ -22,8 +22,8 @@ class Timer {
 
   virtual Clock::time_point now() const = 0;
 
-  // Scheduled action. The timer must outlive it. After its destructor the action neither runs nor will run,
-  // unless the action itself destroys the alarm.
+  // Scheduled action. The timer must outlive it. After its destructor returns, the action is not running and
+  // will not run, unless the action itself destroys the alarm.
   class Alarm {
    public:
     ~Alarm() { timer_.cancel(key_); }
@@ -36,8 +36,8 @@ class Timer {
     const std::pair<Clock::time_point, std::uint64_t> key_;
   };
 
-  // Calls `action` at `when`, or at once on the calling thread if `when` has passed. Actions are called one
-  // at a time and must be short. Do not destroy an alarm with a mutex held that its action locks.
+  // Calls `action` at `when`, or at once on the calling thread if `when` has passed. Scheduled actions run
+  // one at a time and must be short. Do not destroy an alarm while holding a mutex that its action locks.
   [[nodiscard]] Alarm at(Clock::time_point when, Action action);
 
  protected:
@@ -56,14 +56,14 @@ class Timer {
   using Key = std::pair<Clock::time_point, std::uint64_t>;
   void cancel(const Key& key);
 
-  mutable std::mutex mutex_;  // guards all below
+  mutable std::mutex mutex_;  // guards the members below
   std::condition_variable done_;
   std::map<Key, Action> alarms_;
-  std::uint64_t last_number_ = 0, being_done_ = 0;  // alarm numbers, from 1
+  std::uint64_t last_number_ = 0, being_done_ = 0;  // alarm numbers, at least 1; 0: no alarm
   std::thread::id doer_;                            // thread that runs `being_done_`
 };
 
-// Timer on the steady clock. A thread of its own runs the actions.
+// Timer on the steady clock. A separate thread runs the actions.
 class SteadyTimer final : public Timer {
  public:
   SteadyTimer();

@@ -20,9 +20,8 @@ void WorkCancellation::explain() const {
   switch (reason_) {
     case Reason::service_ends: throw Busy("service is shutting down", 5);
     case Reason::time:
-      throw TimedOut("request took more than " + std::to_string(limit_.time.count()) + " s (limit " +
-                     std::to_string(limit_.time.count()) + " s, " + limit_.name +
-                     "); use fewer pixels or samples");
+      throw TimedOut("request took too long (limit " + std::to_string(limit_.time.count()) + " s, " +
+                     limit_.name + "); use fewer pixels or samples");
     default: throw Cancelled("client disconnected");
   }
 }

@@ -9,21 +9,21 @@
 
 namespace orrery {
 
-// Error for work that exceeds its time limit.
+// Thrown for work that exceeds its time limit.
 class TimedOut : public Error {
  public:
   using Error::Error;
 };
 
-// Cancels the work of a request once its client disconnects, its time limit expires or the service ends. Safe
-// from any thread.
+// Cancels the work of a request once its client disconnects, its time limit expires or the service ends.
+// Thread-safe.
 class WorkCancellation {
  public:
   struct Limit {
     std::chrono::seconds time;
     const char* name;  // name in /v1/limits
   };
-  // The limit counts from `since`. `timer` must outlive this object.
+  // The time limit starts at `since`. `timer` must outlive this object.
   WorkCancellation(const std::stop_token& gone, const std::stop_token& service_ends, Timer& timer,
                    Clock::time_point since, const Limit& limit);
 

@@ -46,7 +46,7 @@ std::size_t WorkMemory::bytes() const {
 }
 
 std::size_t WorkMemory::resize(const std::string& client, std::size_t own, std::size_t bytes, bool already) {
-  constexpr std::size_t kStep = 256 * 1024;  // granularity, to be called less often
+  constexpr std::size_t kStep = 256 * 1024;  // granularity, so that resize() is called less often
   constexpr std::size_t kSmall = 2 * kStep;  // a small image; always granted
   const std::size_t rounded = (bytes + kStep - 1) / kStep * kStep;
   const std::lock_guard lock(mutex_);
@@ -63,22 +63,23 @@ void WorkMemory::require_room(const std::string& client, std::size_t own, std::s
   const auto known = taken_by_.find(client);
   const std::size_t others_of_client = (known == taken_by_.end() ? 0 : known->second) - own;
   const std::size_t of_others = taken_ - own - others_of_client;
-  // Returns whether the client leaves as much as it then holds. Sums of few terms stay below 2^62.
+  // Returns whether at least as many bytes stay free as the client would hold. The sums are below 2^62, so
+  // they do not overflow.
   const auto fits = [&](std::size_t others, std::size_t client_has) {
     return others + 2 * (client_has + bytes) <= max_;
   };
   if (fits(of_others, others_of_client)) return;
   if (!fits(0, 0))
-    throw InputError("", "request needs at least " + bytes_text(bytes) + " of memory at one time (limit " +
+    throw InputError("", "request needs at least " + bytes_text(bytes) + " of memory at once (limit " +
                              grouped(max_ / 2) + ", half of " + kName + ")");
   if (fits(of_others, 0))
     throw ClientLimitExceeded("this client's requests already hold " + bytes_text(others_of_client) +
                                   " and need " + grouped(bytes) + " more (limit " + bytes_text(max_) +
                                   " for all clients, " + kName + ")",
                               kRetry_s, kName);
-  throw LimitExceeded("other clients' requests hold " + bytes_text(of_others) + ", and this client's need " +
-                          grouped(others_of_client + bytes) + " (limit " + bytes_text(max_) +
-                          " for all clients, " + kName + ")",
+  throw LimitExceeded("other clients' requests hold " + bytes_text(of_others) +
+                          ", and this client's requests need " + bytes_text(others_of_client + bytes) +
+                          " (limit " + bytes_text(max_) + " for all clients, " + kName + ")",
                       kRetry_s, kName);
 }
 

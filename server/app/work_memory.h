@@ -10,14 +10,16 @@
 
 namespace orrery {
 
-// Memory quota for all work. A client may hold as many bytes as it leaves to others: one client alone may
-// hold half, two a third each. A small image always fits. Safe from any thread. Must outlive its accounts.
+// Memory quota for all work. A client may hold at most as many bytes as stay free: one client alone may hold
+// half, two clients a third each. Accounts of up to 512 KiB are always granted. Thread-safe. Must outlive its
+// accounts.
 class WorkMemory {
  public:
   explicit WorkMemory(std::size_t max_bytes) : max_(max_bytes) {}
 
-  // Opens an empty account for work of the client. Its run() throws InputError if the work could never fit,
-  // ClientLimitExceeded if other work of the client holds the memory, else LimitExceeded.
+  // Opens an empty account for work of the client. Its run() throws InputError if the work could never fit.
+  // It throws ClientLimitExceeded if other work of the client holds the memory, and LimitExceeded if work of
+  // other clients does.
   std::shared_ptr<MemoryAccount> open(const std::string& client);
 
   std::size_t bytes() const;
@@ -25,15 +27,15 @@ class WorkMemory {
 
  private:
   class Share;
-  // Resizes a share of `own` bytes and returns its new size. Skips the quota check if the bytes are `already`
-  // in use.
+  // Resizes a share of `own` bytes to at least `bytes`. Returns the new size. Skips the quota check if the
+  // bytes are `already` in use.
   std::size_t resize(const std::string& client, std::size_t own, std::size_t bytes, bool already);
   void require_room(const std::string& client, std::size_t own, std::size_t bytes) const;
 
   const std::size_t max_;
-  mutable std::mutex mutex_;  // guards all below
+  mutable std::mutex mutex_;  // guards the members below
   std::size_t taken_ = 0;
-  std::map<std::string, std::size_t> taken_by_;  // by client, without zeros
+  std::map<std::string, std::size_t> taken_by_;  // by client; clients with 0 bytes are absent
 };
 
 }  // namespace orrery

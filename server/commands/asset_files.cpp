@@ -9,7 +9,7 @@ namespace orrery {
 template <class Read>
 auto AssetFiles::read_with(const std::string& name, const Read& read) const {
   namespace fs = std::filesystem;
-  if (name.find('\0') != std::string::npos) throw InputError("", "file name must not contain a NUL");
+  if (name.find('\0') != std::string::npos) throw InputError("", "file name must not contain NUL");
   std::error_code error;
   const fs::path folder = fs::canonical(folder_.empty() ? "." : folder_, error);
   const fs::path path = fs::canonical(folder / name, error);  // resolves symbolic links

@@ -6,7 +6,7 @@
 
 namespace orrery {
 
-// Mesh and picture files in the folder of a scene or below it.
+// Mesh and image files in the folder of a scene or below it.
 class AssetFiles final : public AssetSource {
  public:
   explicit AssetFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}

@@ -25,9 +25,9 @@ Examples:
   orrery audit scenes/cornell-box.json --samples 16 --json
 
 Renders random pixels with the given options and with the full model: double
-precision, maximum depth, no cuts. Prints the difference, and a bound for the
-whole image that holds with 95 % confidence for any scene. Writes no image.
-Budgets and layers are not supported.
+precision, maximum depth, no skipped rays and no clamping. Prints the difference
+and a bound for the whole image, with 95 % confidence for any scene. Writes no
+image. Budgets and layers are not supported.
 )";
 
 struct AuditOptions {
@@ -50,7 +50,7 @@ nlohmann::ordered_json audit_json(const Audit& found, const Plan& plan) {
 
 std::string audit_text(const Audit& found, const Plan& plan) {
   char text[640];
-  char bound[64] = "unknown: the error of a pixel is unbounded";
+  char bound[64] = "unknown: a pixel may have any error";
   if (found.bound.rms) std::snprintf(bound, sizeof bound, "%.3g RMS, 95 %%", *found.bound.rms);
   std::snprintf(text, sizeof text,
                 "%-12s %d random of %d x %d, %d differ by more than %g\n"
@@ -100,7 +100,7 @@ Command add_audit(CLI::App& root) {
       ->check(integer_from(1, kMaxAuditPixels))
       ->group("Audit");
   app->add_option("--draw", options->draw,
-                  with_range("Seed of the choice of pixels", 0, static_cast<double>(kMaxSeed),
+                  with_range("Seed for choosing the pixels", 0, static_cast<double>(kMaxSeed),
                              std::to_string(options->draw)))
       ->check(integer_from(0, kMaxSeed))
       ->type_name("N")

@@ -24,11 +24,11 @@ Examples:
   orrery chart scenes/paper.json -o paper.csv --width 300 --height 300
   orrery chart scenes/cornell-box.json -o box.json --pictures box/
 
-Renders the scene in many configurations and charts CPU time against the error.
-The reference has double precision and four times the samples. Prints the
-cheapest options for some errors. Times mean little on a busy machine; errors
-are not affected. Charts vary --samples and --precision themselves; budgets,
-layers and --view are not supported.
+Renders the scene in many configurations and plots CPU time against error. The
+reference has double precision and four times the samples. Prints the cheapest
+options for several errors. Other programs that use the CPU distort the times,
+but not the errors. --samples and --precision are not supported, because the
+chart varies them. Budgets, layers and --view are not supported either.
 )";
 
 struct ChartOptions {
@@ -52,13 +52,13 @@ RenderResult render_picture(const PreparedScene& scene, const RenderRequest& req
   return render_frame(scene, plan, storage, pool, {.stop = signals.interrupted()});
 }
 
-// Returns "2-whitted-5-float-16.png", which sorts by cost.
+// Returns a name such as "2-whitted-5-float-16.png". `place`: rank by cost, from 0.
 std::string picture_name(std::size_t place, const Configuration& c) {
   return std::to_string(place) + "-" + c.technique + "-" + std::to_string(c.max_depth) + "-" +
          precision_name(c.double_precision) + "-" + std::to_string(c.samples) + ".png";
 }
 
-// Renders the Pareto front again with the seeds of the first round, and writes the pictures.
+// Renders the Pareto front again with the seeds of the first round, and writes the images.
 void write_pictures(const std::string& folder, const Study& study, const PreparedScene& scene,
                     WorkerPool& pool, const SignalWatch& signals) {
   const std::vector<std::size_t> front = study.chart().front();
@@ -98,7 +98,7 @@ int chart(ChartOptions options) {
     std::filesystem::create_directories(options.pictures, failed);
     if (!std::filesystem::is_directory(options.pictures, failed))
       throw FileError("cannot write to " + options.pictures +
-                      " (--pictures): not a folder, and it cannot be created");
+                      " (--pictures): not a folder and cannot be created");
     require_writable((std::filesystem::path(options.pictures) / "0.png").string());
   }
   std::optional<ProgressBar> bar(std::in_place, "pictures");
@@ -129,7 +129,7 @@ Command add_chart(CLI::App& root) {
       ->type_name("FILE")
       ->required()
       ->group(kCommonGroup);
-  add_render_flags(*app, options->render, CommonOptions(kCommonOptions).first(2));  // a chart varies the rest
+  add_render_flags(*app, options->render, CommonOptions(kCommonOptions).first(2));  // width, height
   add_threads_flag(*app, options->threads);
   app->add_option("--chart-samples", options->extent.samples,
                   with_range("Maximum samples per pixel of the configurations 1, 4, 16, ...", 1,
@@ -138,7 +138,7 @@ Command add_chart(CLI::App& root) {
       ->type_name("N")
       ->group("Chart");
   app->add_option("--rounds", options->extent.rounds,
-                  with_range("Images per configuration with different seeds: two, more if not dominated", 1,
+                  with_range("Maximum images per configuration, with different seeds; two if dominated", 1,
                              kMaxChartRounds, std::to_string(options->extent.rounds)))
       ->check(integer_from(1, kMaxChartRounds))
       ->type_name("N")

@@ -28,7 +28,7 @@ nlohmann::ordered_json json_of(const std::string& file, const Problem& problem, 
   return {{"file", file}, {"severity", severity}, {"pointer", problem.pointer}, {"detail", problem.detail}};
 }
 
-// Checks files one by one. Prints findings at once, or with `json` all together at the end.
+// Checks files one by one. Prints each finding immediately or, with `json`, all of them in finish().
 class Checker {
  public:
   explicit Checker(bool json) : json_(json) {}
@@ -49,7 +49,7 @@ class Checker {
     }
   }
 
-  // Returns the exit status. An unreadable file takes precedence over an invalid scene.
+  // Returns the exit status. That of an unreadable file takes precedence over that of an invalid scene.
   int finish() const {
     if (json_) std::cout << found_.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
     return status_;

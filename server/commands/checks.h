@@ -9,8 +9,8 @@
 #include "core/base/number.h"
 #include "core/params/params.h"
 
-// Checks of option values. Their errors have the same text as those of the reader. CLI::Range would also
-// accept NaN.
+// Validators of option values. Their error messages match those of the scene reader. CLI::Range would accept
+// NaN.
 namespace orrery {
 
 inline CLI::Validator integer_from(std::int64_t min, std::int64_t max) {

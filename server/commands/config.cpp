@@ -40,6 +40,21 @@ std::vector<std::string> names_as(const Spell& spell) {
   return names;
 }
 
+// Returns the present name of a setting and, if it has one, its former name.
+std::vector<std::string_view> names_of(const Setting& setting) {
+  if (setting.former.empty()) return {setting.name};
+  return {setting.name, setting.former};
+}
+
+// Returns the setting with a present or former name, or null.
+const Setting* find_setting(std::string_view name) {
+  const auto rows = all_settings();
+  const auto row = std::find_if(rows.begin(), rows.end(), [&](const Setting& setting) {
+    return setting.name == name || (!name.empty() && setting.former == name);
+  });
+  return row == rows.end() ? nullptr : &*row;
+}
+
 // Returns a problem for the unknown `name` of a kind such as "setting", with the most similar name of `known`
 // as a suggestion.
 Problem unknown(const std::string& place, const char* kind, const std::string& name,
@@ -47,6 +62,10 @@ Problem unknown(const std::string& place, const char* kind, const std::string& n
   const std::vector<std::string_view> views(known.begin(), known.end());
   const auto meant = nearest(name, views);
   return {place, std::string("unknown ") + kind + " " + shortened(name, 80) + question_of(meant)};
+}
+
+Problem given_twice(const std::string& place, const std::string& former, const std::string& present) {
+  return {place, former + " is the former name of " + present + "; give only " + present};
 }
 
 // Returns the help of a setting with its range and its default.
@@ -60,12 +79,15 @@ std::string help_of(const Setting& setting) {
 }
 
 void add_flag(CLI::App& app, const Setting& setting, const char* group) {
-  const std::string help = help_of(setting), flag = flag_of(setting.name);
+  const std::string help = help_of(setting);
   const bool takes_value = !std::holds_alternative<bool Settings::*>(setting.member);
-  CLI::Option* option = takes_value ? app.add_option(flag, help) : app.add_flag(flag, help);
-  option->envname(variable_of(setting.name))->group(group);
-  if (takes_value) option->type_name(std::string(setting.value));
-  if (is_list(setting)) option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  for (const std::string_view name : names_of(setting)) {
+    const std::string flag = flag_of(name);
+    CLI::Option* option = takes_value ? app.add_option(flag, help) : app.add_flag(flag, help);
+    option->envname(variable_of(name))->group(name == setting.name ? group : "");  // "" hides it in the help
+    if (takes_value) option->type_name(std::string(setting.value));
+    if (is_list(setting)) option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  }
 }
 
 void take(Settings& settings, const Setting& setting, const std::string& text, const std::string& place,
@@ -97,15 +119,15 @@ std::string text_of(const nlohmann::json& value, bool list) {
 void read_members(Settings& settings, const nlohmann::json& json, const std::string& path,
                   std::vector<Problem>& problems) {
   for (const auto& [name, value] : json.items()) {
-    const auto rows = all_settings();
-    const auto row = std::find_if(rows.begin(), rows.end(),
-                                  [&wanted = name](const Setting& s) { return s.name == wanted; });
+    const Setting* row = find_setting(name);
     const std::string before = "/" + name.substr(0, 80) + ": ";
-    if (row == rows.end()) {
+    if (!row) {
       problems.push_back(unknown(path, "setting", name,
                                  names_as([](std::string_view known) { return std::string(known); })));
       continue;
     }
+    if (name == row->former && json.contains(row->name))
+      problems.push_back(given_twice(path, "/" + name, "/" + std::string(row->name)));
     try {
       take(settings, *row, text_of(value, is_list(*row)), path, before, problems);
     } catch (const InputError& error) {
@@ -128,20 +150,44 @@ nlohmann::json read_file_of_settings(const std::string& path, std::vector<Proble
   return nullptr;
 }
 
-// Reads a setting from its flag or, as CLI11 provides it, from its variable. Also checks a variable that the
-// flag overrides.
-void read_flag(Settings& settings, const Setting& setting, const CLI::Option& option,
+// Text of a setting and the flag or variable that holds it.
+struct Source {
+  std::string place, text;
+};
+
+std::vector<Source> variables_of(const Setting& setting) {
+  std::vector<Source> sources;
+  for (const std::string_view name : names_of(setting))
+    if (const char* text = std::getenv(variable_of(name).c_str()))
+      sources.push_back({variable_of(name), text});
+  return sources;
+}
+
+// Returns the flags of a setting on the command line. CLI11 gives a flag without value the text of its
+// variable; such a flag is left out.
+std::vector<Source> flags_of(const Setting& setting, const CLI::App& app) {
+  std::vector<Source> sources;
+  for (const std::string_view name : names_of(setting)) {
+    const CLI::Option& option = *app.get_option(flag_of(name));
+    if (option.count() == 0) continue;
+    std::string text;
+    for (const std::string& part : option.results()) text += (text.empty() ? "" : ",") + part;
+    const char* variable = std::getenv(variable_of(name).c_str());
+    if (!variable || text != variable) sources.push_back({flag_of(name), text});
+  }
+  return sources;
+}
+
+// Reads a setting from its flag, else from its variable. Also checks a variable that the flag overrides.
+void read_flag(Settings& settings, const Setting& setting, const CLI::App& app,
                std::vector<Problem>& problems) {
-  if (option.count() == 0) return;
-  std::string text;
-  for (const std::string& part : option.results()) text += (text.empty() ? "" : ",") + part;
-  const char* variable = std::getenv(variable_of(setting.name).c_str());
-  const bool from_variable = variable && text == variable;
-  take(settings, setting, text, from_variable ? variable_of(setting.name) : flag_of(setting.name), "",
-       problems);
-  if (!variable || from_variable) return;
+  const std::vector<Source> flags = flags_of(setting, app), variables = variables_of(setting);
   Settings overridden;
-  take(overridden, setting, variable, variable_of(setting.name), "", problems);
+  for (const Source& source : variables)
+    take(flags.empty() ? settings : overridden, setting, source.text, source.place, "", problems);
+  for (const Source& source : flags) take(settings, setting, source.text, source.place, "", problems);
+  for (const auto& sources : {flags, variables})
+    if (sources.size() > 1) problems.push_back(given_twice("", sources[1].place, sources[0].place));
 }
 
 void refuse_unknown_variables(std::vector<Problem>& problems) {
@@ -150,7 +196,10 @@ void refuse_unknown_variables(std::vector<Problem>& problems) {
     const std::string_view text(*entry);
     const std::string name(text.substr(0, text.find('=')));
     const bool ours = name.starts_with(kPrefix) && name != kTokenOfClients;
-    if (ours && std::find(known.begin(), known.end(), name) == known.end())
+    const bool former = std::any_of(all_settings().begin(), all_settings().end(), [&](const Setting& s) {
+      return !s.former.empty() && variable_of(s.former) == name;
+    });
+    if (ours && !former && std::find(known.begin(), known.end(), name) == known.end())
       problems.push_back(unknown("", "setting", name, known));
   }
 }
@@ -158,7 +207,8 @@ void refuse_unknown_variables(std::vector<Problem>& problems) {
 void refuse_unknown_flags(const std::vector<std::string>& words, const CLI::App& app,
                           std::vector<Problem>& problems) {
   std::vector<std::string> known;
-  for (const CLI::Option* option : app.get_options()) known.push_back("--" + option->get_lnames().at(0));
+  for (const CLI::Option* option : app.get_options())
+    if (!option->get_group().empty()) known.push_back("--" + option->get_lnames().at(0));
   bool after_flag = false;  // a word after an unknown flag is its value
   for (const std::string& word : words) {
     const std::string name = word.substr(0, word.find('='));
@@ -185,8 +235,7 @@ Settings read_settings(const CLI::App& app, const std::string& config_file, std:
   const nlohmann::json file = config_file.empty() ? nullptr : read_file_of_settings(config_file, problems);
   const auto read_over = [&](Settings settings, std::vector<Problem>& found) {
     if (!file.is_null()) read_members(settings, file, config_file, found);
-    for (const Setting& setting : all_settings())
-      read_flag(settings, setting, *app.get_option(flag_of(setting.name)), found);
+    for (const Setting& setting : all_settings()) read_flag(settings, setting, app, found);
     return settings;
   };
   Settings settings = read_over(Settings(), problems);

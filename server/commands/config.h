@@ -12,8 +12,9 @@ class App;
 
 namespace orrery {
 
-// Configuration of the service. Each setting has one name. Its value comes from a flag (--body-bytes), else
-// from the environment (ORRERY_BODY_BYTES), else from a JSON file ("body_bytes"), else from its default.
+// Configuration of the service. Each setting has one name. Its value comes from a flag
+// (--max-request-body-bytes), else from the environment (ORRERY_MAX_REQUEST_BODY_BYTES), else from a JSON
+// file ("max_request_body_bytes"), else from its default.
 
 // Adds a flag for each setting. Unknown flags are accepted here and reported by read_settings().
 void add_setting_flags(CLI::App& app);

@@ -5,8 +5,7 @@
 namespace orrery {
 
 FrameNames::FrameNames(const std::string& pattern) {
-  const InputError bad("--output",
-                       "must contain one %d or %04d for the number of the frame (got " + pattern + ")");
+  const InputError bad("--output", "must contain one %d or %04d for the frame number (got " + pattern + ")");
   bool found = false;
   for (std::size_t i = 0; i < pattern.size(); ++i) {
     std::string& part = found ? after_ : before_;

@@ -8,14 +8,14 @@
 namespace orrery {
 namespace {
 
-constexpr std::size_t kLineWidth = 80;      // line width
+constexpr std::size_t kLineWidth = 80;      // in columns
 constexpr std::size_t kOptionColumn = 28;   // column of option descriptions
 constexpr std::size_t kCommandColumn = 13;  // column of command descriptions
 constexpr std::size_t kListColumn = 10;     // column of listed option names
 
-// Returns "  NAME", padded to `column`, and the text behind it. Continues the text in the same column.
+// Returns "  NAME" padded to `column`, followed by `text`. Wraps `text` and indents it to `column`.
 std::string help_entry(const std::string& name, const std::string& text, std::size_t column) {
-  std::string whole, last = "  " + name;  // lines
+  std::string whole, last = "  " + name;  // complete lines, current line
   const auto end_line = [&] {
     whole += last + "\n";
     last = "";

@@ -9,14 +9,14 @@ class App;
 
 namespace orrery {
 
-// Prefix of the groups whose options the help of a command lists by name only. `orrery help options`
-// describes them.
+// Prefix of group names. The help of a command lists the options of these groups by name only, and
+// `orrery help options` describes them.
 inline constexpr std::string_view kListed = "listed: ";
 
-// Sets the layout of the help of `root` and of subcommands that are added later: at most 80 columns.
+// Sets the help layout of `root` and of subcommands that are added later: at most 80 columns.
 void set_help_layout(CLI::App& root);
 
-// Returns the options of the app by group, in that layout.
+// Returns the help of the app's options by group, in the same layout.
 std::string option_groups_text(const CLI::App& app);
 
 // Formats the range of a number: "1-4096", "-180 to 180".

@@ -15,7 +15,7 @@ std::string names_text(const RenderOption::Names& names) {
   return text;
 }
 
-// Return the allowed values, or "" if the option's value_name() shows them.
+// Return the allowed values, or "" if value_name() of the option shows them.
 template <class I>
 std::string values_of(const RenderOption::Integer<I>& kind) {
   return range_text(static_cast<double>(kind.min), static_cast<double>(kind.max));
@@ -47,7 +47,7 @@ std::string_view heading_of(const RenderOption& option) {
 
 std::string help_of(const RenderOption& option) {
   std::string note = std::visit([](const auto& kind) { return values_of(kind); }, option.kind);
-  if (!option.by_technique) {  // else the help has the defaults
+  if (!option.by_technique) {  // otherwise `help` states the defaults
     std::string fallback = option.text(default_settings());
     std::erase_if(fallback, [](char c) { return c == '"' || c == '[' || c == ']'; });
     if (fallback.empty()) fallback = "none";

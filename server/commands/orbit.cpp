@@ -27,8 +27,8 @@ Examples:
   orrery orbit scenes/paper.json --frames 240 --discard      # prints the speed
 
 The camera turns once around the scene, or by --step per frame, while the motion
-of the scene plays. A budget applies to the first frame; all frames use its
-samples. FFmpeg makes a film that browsers play (the filter makes sides even):
+of the scene plays. A budget sets the samples of the first frame, and all frames
+use them. FFmpeg makes a video for browsers (the filter makes the sides even):
   ffmpeg -framerate 30 -i frame-%04d.png -vf "pad=ceil(iw/2)*2:ceil(ih/2)*2" \
     -pix_fmt yuv420p orbit.mp4
 )";
@@ -46,7 +46,7 @@ struct Totals {
   int frames = 0;
   std::uint64_t bytes = 0, rays = 0;
   int refitted = 0;  // frames with a refitted accelerator
-  double worst = 1;  // maximum surface area growth of refitted ones
+  double worst = 1;  // maximum growth factor of their surface area
   double build_ms = 0;
   double render_ms = 0, encode_ms = 0;
   double seconds = 0, cpu_s = 0;
@@ -155,7 +155,7 @@ class OrbitRun {
   PreparedScene scene_;
   OrbitPath path_;
   OrbitBudget budget_;
-  SignalWatch signals_;  // after the scene is read, before the pool starts its threads
+  SignalWatch signals_;  // created after the scene is read and before the pool starts its threads
   WorkerPool pool_;
 };
 
@@ -174,8 +174,7 @@ bool is_missed(const nlohmann::ordered_json& budget, int frames) {
 
 int orbit(const OrbitOptions& options) {
   if (options.output.empty() && !options.discard)
-    throw InputError("--output",
-                     "must be a name for the frames such as frame-%04d.png; --discard writes no files");
+    throw InputError("--output", "must be a name such as frame-%04d.png, unless --discard is given");
   OrbitRun turn(options);
   const Totals totals = turn.run();
   const nlohmann::ordered_json budget = turn.budget();
@@ -215,17 +214,17 @@ Command add_orbit(CLI::App& root) {
       ->group("Orbit");
   options->step_given =
       app->add_option("--step", options->step,
-                      with_range("Degrees per frame", -kMaxStep, kMaxStep, "one full turn in all frames"))
+                      with_range("Degrees per frame", -kMaxStep, kMaxStep, "one full turn over all frames"))
           ->check(number_from(-kMaxStep, kMaxStep))
           ->type_name("DEGREES")
           ->group("Orbit");
   options->time_step_given = app->add_option("--time-step", options->time_step,
                                              with_range("Seconds of scene motion per frame", -kMaxTimeStep,
-                                                        kMaxTimeStep, "the whole motion in all frames"))
+                                                        kMaxTimeStep, "the whole motion over all frames"))
                                  ->check(number_from(-kMaxTimeStep, kMaxTimeStep))
                                  ->type_name("SECONDS")
                                  ->group("Orbit");
-  app->add_flag("--discard", options->discard, "Render and encode, print the speed, write no file")
+  app->add_flag("--discard", options->discard, "Render and encode, print the speed, write no files")
       ->excludes(output)
       ->group("Output");
   app->add_flag("--stats{text}", options->stats, "Print times and sizes, as text or JSON")

@@ -14,14 +14,14 @@ namespace orrery {
 
 namespace {
 
-// Whether the file is written by replacement. Devices and pipes are not.
+// Whether write_file() replaces the file. It writes directly to devices and pipes.
 bool is_replaced(const std::string& path) {
   std::error_code ignored;
   const auto kind = std::filesystem::status(path, ignored).type();
   return kind == std::filesystem::file_type::regular || kind == std::filesystem::file_type::not_found;
 }
 
-// Returns the path behind symbolic links.
+// Returns the path with symbolic links resolved.
 std::string target_of(const std::string& path) {
   std::error_code ignored;
   const std::string target = std::filesystem::weakly_canonical(path, ignored).string();

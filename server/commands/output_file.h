@@ -15,11 +15,11 @@ FileFormat format_of(const std::string& path);
 // Whether both paths lead to the same file after symbolic links are resolved.
 bool is_same_file(const std::string& a, const std::string& b);
 
-// Throws FileError if the file cannot be written. For checks before long work.
+// Throws FileError if the file cannot be written. Called before a long render.
 void require_writable(const std::string& path);
 
-// Writes all or nothing: writes a temporary file in the same folder and renames it. Devices and pipes are
-// written directly. Throws FileError.
+// Writes a file atomically: writes a temporary file in the same folder and renames it. Writes directly to
+// devices and pipes. Throws FileError.
 void write_file(const std::string& path, std::string_view bytes);
 
 }  // namespace orrery

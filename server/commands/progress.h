@@ -6,14 +6,14 @@
 
 namespace orrery {
 
-// Terminal line with the progress and the estimated time left. Silent if standard error is no terminal. say()
-// and update() are thread-safe.
+// Terminal line with the progress and the estimated time left. Writes nothing if standard error is not a
+// terminal. say() and update() are thread-safe.
 class ProgressBar {
  public:
   explicit ProgressBar(std::string unit);  // unit of the count: "tiles"
   ~ProgressBar();                          // clears the line
 
-  // Shows a step that has no count.
+  // Shows the current step instead of a count.
   void say(const std::string& what);
   void update(int done, int total);
 

@@ -60,8 +60,7 @@ int render(const RenderOptions& options) {
   if (options.output) require_writable(*options.output);
   if (options.certificate) {
     if (options.output && is_same_file(*options.certificate, *options.output))
-      throw InputError("--certificate",
-                       "must differ from the file of --output (got " + *options.certificate + ")");
+      throw InputError("--certificate", "must differ from --output (got " + *options.certificate + ")");
     require_writable(*options.certificate);
   }
   RunStats stats;
@@ -70,7 +69,7 @@ int render(const RenderOptions& options) {
   bar->say("reading " + options.render.scene);
   const PreparedScene scene(load_scene_file(options.render.scene));
   stats.load_ms = milliseconds_since(start);
-  const SignalWatch signals;  // after the read, which signals end by default
+  const SignalWatch signals;  // until here, signals end the process
   Plan plan = make_plan(scene.scene(), request);
   WorkerPool pool(options.threads);
   stats.threads = pool.threads();

@@ -16,7 +16,7 @@
 namespace orrery {
 namespace {
 
-// Returns the flag name that errors use.
+// Returns the flag name for error messages.
 std::string short_flag_of(const RenderOption& option) {
   return flag_of(option.short_name.empty() ? option.key : option.short_name);
 }
@@ -25,7 +25,7 @@ std::string flags_of(const RenderOption& option) {
   return option.short_name.empty() ? flag_of(option.key) : short_flag_of(option) + "," + flag_of(option.key);
 }
 
-// Returns the options of --plan. A URL counts from its "?" on; without "?" it has no options.
+// Returns the options of --plan. Ignores a URL up to its "?". A URL without "?" has no options.
 std::vector<OptionText> texts_of_plan(std::string_view plan) {
   if (plan.find('?') == plan.npos && plan.find('/') != plan.npos) return {};
   const auto called = [](std::string_view name) { return "--plan " + std::string(name); };
@@ -46,7 +46,7 @@ void add_threads(CLI::App& app, int& threads, const std::string& group) {
       ->group(group);
 }
 
-// Adds the flags of all image options. `before` precedes the headings in the names of their groups.
+// Adds the flags of all image options. `before`: prefix of the group names.
 void add_image_flags(CLI::App& app, RenderFlags& flags, CommonOptions common, const std::string& before) {
   const auto options = render_options();
   flags.texts.resize(options.size());
@@ -57,7 +57,7 @@ void add_image_flags(CLI::App& app, RenderFlags& flags, CommonOptions common, co
         ->group(is_common ? kCommonGroup : before + std::string(heading_of(options[i])));
     flags.options.push_back(option);
   }
-  app.add_flag("--full-model", flags.full_model, "Omit no stage, even if the scene does not need it")
+  app.add_flag("--full-model", flags.full_model, "Run all stages, even those that the scene does not need")
       ->group(before + "Speed");
   app.add_option("--slice", flags.slice,
                  with_range("Rays processed together by each stage; does not change the image", 16, kBatch,

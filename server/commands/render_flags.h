@@ -43,8 +43,8 @@ std::string image_options_help();
 
 // Returns the request of the flags. Throws InputError with flag names.
 RenderRequest read_render_flags(const RenderFlags& flags);
-// Returns the request for a picture in a file of this format; nullopt: no file. Throws InputError with flag
-// names.
+// Returns the request for an image. `format`: format of its file, or nullopt if none is written. Throws
+// InputError with flag names.
 RenderRequest read_picture_flags(const RenderFlags& flags, std::optional<FileFormat> format);
 // Returns the same problems with flag names instead of pointers to options.
 InputError with_flag_names(const InputError& error);

@@ -19,8 +19,7 @@ std::string shown_name(const std::string& path) { return path == "-" ? "standard
 constexpr std::size_t kMaxBytes = std::size_t{1} << 30;
 
 [[noreturn]] void refuse_size(const std::string& name) {
-  throw FileError("cannot read " + name + ": file has more than " + grouped(kMaxBytes) + " bytes (limit " +
-                  grouped(kMaxBytes) + ")");
+  throw FileError("cannot read " + name + ": file has more than " + grouped(kMaxBytes) + " bytes");
 }
 
 std::string read_all(std::istream& in, const std::string& name) {
@@ -46,7 +45,7 @@ std::string printable(const std::string& text) {
 }  // namespace
 
 BadScene::BadScene(const std::string& file, const InputError& error) : InputError(error.problems()) {
-  const bool malformed = dynamic_cast<const MalformedJson*>(&error);  // its text has line and column
+  const bool malformed = dynamic_cast<const MalformedJson*>(&error);  // its detail has line and column
   for (const Problem& p : problems())
     lines_.push_back(printable(file + ": " + (malformed ? p.detail : p.text())));
 }

@@ -27,7 +27,7 @@ constexpr const char* kServeExamples = R"(
 Examples:
   orrery serve                          # page on http://127.0.0.1:8080
   orrery serve --port 0                 # a free port, printed on the first line
-  orrery serve --config orrery.json     # {"port": 80, "body_bytes": 1000000}
+  orrery serve --config orrery.json     # {"max_request_body_bytes": 1000000}
   curl --data-binary @scenes/paper.json http://127.0.0.1:8080/v1/render -o a.png
 
 A setting comes from its option (--port), else from its environment variable
@@ -45,7 +45,8 @@ struct ServeOptions {
   std::string config, log = isatty(STDERR_FILENO) ? "text" : "json";
 };
 
-// Appends errors that involve several settings or the meaning of a value.
+// Appends the errors that read_settings() cannot detect: conflicts between settings, and malformed origins,
+// networks and prefixes.
 void check_values(const Settings& settings, std::vector<Problem>& problems) {
   const auto note = [&](const char* flag, const auto& read) {
     try {
@@ -72,8 +73,8 @@ void check_values(const Settings& settings, std::vector<Problem>& problems) {
   note("--memory-bytes", [&] { work_bytes(settings); });
 }
 
-// Appends errors of the environment: a host open to other machines without tokens, and process limits that
-// are too low for these settings.
+// Appends errors of the environment: a host that other machines can reach although no token is required, and
+// process limits that are too low for these settings.
 void check_environment(const Settings& settings, std::vector<Problem>& problems) {
   try {
     if (!settings.insecure && settings.tokens_file.empty() && !is_loopback(settings.host))
@@ -89,19 +90,19 @@ void check_environment(const Settings& settings, std::vector<Problem>& problems)
   if (const std::size_t allowed = allowed_addresses(); allowed < addresses)
     problems.push_back({"--memory-bytes", grouped(settings.memory_bytes) + " bytes, " +
                                               std::to_string(settings.connections) + " connections and " +
-                                              std::to_string(threads) + " threads may take " +
+                                              std::to_string(threads) + " threads may need " +
                                               grouped(addresses) + " bytes of address space (limit " +
                                               grouped(allowed) + ", ulimit -v)"});
   const std::size_t needed = descriptors_for(settings.connections), allowed = allow_descriptors(needed);
   if (allowed < needed)
-    problems.push_back({"--connections", std::to_string(settings.connections) + " connections may take " +
+    problems.push_back({"--connections", std::to_string(settings.connections) + " connections may need " +
                                              grouped(needed) + " open files (limit " + grouped(allowed) +
                                              ", ulimit -n)"});
 }
 
 // Returns the number of tokens. Appends the errors of the token and key files.
 std::size_t count_tokens(const Settings& settings, std::vector<Problem>& problems) try {
-  return Access(settings.tokens_file, settings.share_key_file).tokens();
+  return Access(settings.tokens_file, settings.link_signing_key_file).tokens();
 } catch (const InputError& error) {
   problems.insert(problems.end(), error.problems().begin(), error.problems().end());
   return 0;
@@ -118,7 +119,8 @@ void announce(const Service& service, const Settings& settings, const Log& log) 
 
 // `read`: returns the settings at the time of the call.
 int run_service(const Settings& settings, const Log& log, const std::function<Settings()>& read) {
-  // The signals are blocked before the service starts threads. Handlers use the service once it exists.
+  // SignalWatch blocks the signals before the service starts threads. The callbacks do nothing until the
+  // service exists.
   std::mutex mutex;
   Service* running = nullptr;  // guarded by mutex
   const auto tell = [&](const auto& what) {
@@ -165,7 +167,7 @@ int serve(const CLI::App& app, const ServeOptions& options) {
   const Log log(options.log == "json" ? LogForm::json : LogForm::text,
                 options.quiet ? LogLevel::warning : LogLevel::info);
   return run_service(settings, log, [&] {
-    // A pipe cannot be read twice, or may block.
+    // A pipe cannot be read again, and reading could block.
     if (!options.config.empty() && !std::filesystem::is_regular_file(options.config)) return settings;
     std::vector<Problem> found;
     const Settings fresh = read_settings(app, options.config, found);

@@ -23,9 +23,9 @@ Examples:
   orrery stability --docs docs      # writes docs/stability.md and its images
   orrery stability --speed --svg speed.svg
 
-Measures the errors of known numerical methods and of the methods used here, in
-a third of a second. Exit status 1 if a bound is exceeded. --speed measures CPU
-time instead, as ratios, in interleaved runs.
+Measures the errors of naive numerical methods and of the methods used here,
+which takes 0.3 s. Exit status 1 if a method exceeds its bound. --speed measures
+ratios of CPU times instead, in interleaved runs.
 )";
 
 struct StabilityOptions {
@@ -73,7 +73,7 @@ int stability(const StabilityOptions& options) {
 Command add_stability(CLI::App& root) {
   const auto options = std::make_shared<StabilityOptions>();
   CLI::App* app =
-      root.add_subcommand("stability", "Measure known numerical failures and the methods used here");
+      root.add_subcommand("stability", "Measure errors of naive numerical methods and of those used here");
   app->footer(kStabilityExamples);
   CLI::Option* json = app->add_flag("--json", options->json, "Print JSON");
   app->add_option("--docs", options->docs,
@@ -87,7 +87,7 @@ Command add_stability(CLI::App& root) {
       ->type_name("FILE.svg")
       ->needs(speed);
   app->add_option("--rounds", options->rounds,
-                  with_range("With --speed: runs per method, of which the median counts", 7, 1000,
+                  with_range("With --speed: runs per method, to report their median", 7, 1000,
                              std::to_string(options->rounds)))
       ->check(integer_from(7, 1000))
       ->type_name("N")

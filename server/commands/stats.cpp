@@ -67,7 +67,7 @@ void prediction_text(std::string& text, const Plan& plan, const TraceCounts& cou
 ordered_json stats_json(const Plan& plan, const RunStats& stats) {
   const TraceCounts& counts = stats.render.counts;
   ordered_json json = options_json(settings_of(plan));
-  json["accelerator"] = stats.render.accelerator->name;  // as settled by the render
+  json["accelerator"] = stats.render.accelerator->name;  // chosen by the render
   const ordered_json measured = {{"instructions", instruction_level()},
                                  {"threads", stats.threads},
                                  {"rays",

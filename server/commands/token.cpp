@@ -40,7 +40,7 @@ Command add_token(CLI::App& root) {
   app->footer(kTokenExamples);
   app->add_option("NAME", options->name, "Name of the client")->required()->group("Arguments");
   app->add_option("--scopes", options->scopes,
-                  "Scopes: read, render, write and admin, which may remove data of other clients (default " +
+                  "Scopes: read, render, write, or admin to remove data of other clients too (default " +
                       options->scopes + ")")
       ->type_name("SCOPE,...");
   return {app, [options] { return make_token(*options); }};

@@ -16,16 +16,14 @@ constexpr std::size_t kLongestLine = 256, kMaxOverhead = 16 * 1024;
 }
 
 [[noreturn]] void refuse_overhead() {
-  refuse("extensions and trailers have more than " + grouped(kMaxOverhead) + " bytes (limit " +
-         grouped(kMaxOverhead) + ")");
+  refuse("extensions and trailers must have at most " + grouped(kMaxOverhead) + " bytes in total");
 }
 
 // Returns the first line without its CR LF, or nullopt if it is incomplete.
 std::optional<std::string_view> line_of(std::string_view bytes) {
   const std::size_t end = bytes.find("\r\n");
   const std::string_view line = bytes.substr(0, end);
-  if (line.size() > kLongestLine)
-    refuse("line has more than " + grouped(kLongestLine) + " bytes (limit " + grouped(kLongestLine) + ")");
+  if (line.size() > kLongestLine) refuse("line must have at most " + grouped(kLongestLine) + " bytes");
   const bool whole = end != std::string_view::npos;
   if (!is_field_text(line.substr(0, line.size() - (!whole && line.ends_with('\r')))))
     refuse("line must not contain control characters");
@@ -85,7 +83,7 @@ std::size_t ChunkDecoder::take_data(std::string_view bytes) {
 }
 
 std::size_t ChunkDecoder::take_end_of_data(std::string_view bytes) {
-  if (!std::string_view("\r\n").starts_with(bytes.substr(0, 2))) refuse("chunk is longer than its size");
+  if (!std::string_view("\r\n").starts_with(bytes.substr(0, 2))) refuse("CR LF must follow the chunk data");
   if (bytes.size() < 2) return 0;
   expects_ = Expects::size;
   return 2;

@@ -14,8 +14,8 @@ class ChunkDecoder {
  public:
   explicit ChunkDecoder(const BodyLimit& limit) : limit_(limit) {}
 
-  // Decodes as much of `bytes` as possible, removes it and appends the data to body(). Returns true at the
-  // end of the body. Throws HttpError 400 if the chunks are malformed, 413 if the body exceeds the limit.
+  // Removes all complete elements from the front of `bytes` and appends chunk data to body(). Returns true at
+  // the end of the body. Throws HttpError 400 if the chunks are malformed, 413 if the body exceeds the limit.
   bool take(std::string& bytes);
 
   std::string& body() { return body_; }
@@ -23,7 +23,8 @@ class ChunkDecoder {
  private:
   enum class Expects { size, data, end_of_data, trailer, nothing };
 
-  // Decodes one element at the front of `bytes`. Returns its length, or 0 if more bytes are needed.
+  // Decodes a line or some chunk data at the front of `bytes`. Returns the number of bytes consumed, or 0 if
+  // more bytes are needed.
   std::size_t step(std::string_view bytes);
   std::size_t take_size(std::string_view bytes);
   std::size_t take_data(std::string_view bytes);
@@ -37,7 +38,7 @@ class ChunkDecoder {
   std::size_t overhead_ = 0;  // bytes of extensions and trailers
 };
 
-// Returns the 413 error for a body of `bytes` bytes; `bytes` is a text such as "more than 1000".
+// Returns the 413 error for a body of `bytes` bytes. `bytes` is a text such as "more than 1000".
 HttpError body_too_long(const BodyLimit& limit, const std::string& bytes);
 
 }  // namespace orrery

@@ -26,7 +26,7 @@ int milliseconds_until(Clock::time_point deadline) {
   return static_cast<int>(std::clamp<std::int64_t>(left, 0, std::numeric_limits<int>::max()));
 }
 
-// Drops the first `bytes` bytes of a message.
+// Removes the first `bytes` bytes from the pieces of a message.
 void take_from(msghdr& left, std::size_t bytes) {
   for (; left.msg_iovlen > 0 && bytes >= left.msg_iov->iov_len; ++left.msg_iov, --left.msg_iovlen)
     bytes -= left.msg_iov->iov_len;
@@ -37,10 +37,10 @@ void take_from(msghdr& left, std::size_t bytes) {
 
 }  // namespace
 
-// Deadline for the next bytes of a message.
+// Enforces the minimum transfer rate: returns the deadline for the next bytes of a message.
 class Connection::MinimumRate {
  public:
-  // `bytes`: size of the message; 0 if unknown.
+  // `bytes`: size of the message in bytes, or 0 if unknown.
   MinimumRate(std::size_t bytes, const Timeouts& patience)
       : window_(patience.window),
         end_(Clock::now() + patience.whole + patience.window),
@@ -59,7 +59,7 @@ class Connection::MinimumRate {
   const std::chrono::seconds window_;
   const Clock::time_point end_;
   const std::size_t bytes_a_window_;
-  std::size_t crossed_ = 0;  // bytes in this window
+  std::size_t crossed_ = 0;  // bytes transferred in this window
   Clock::time_point deadline_ = Clock::now() + window_;
 };
 
@@ -140,8 +140,8 @@ bool Connection::skip_empty_lines() {
 }
 
 bool Connection::wait_for_request() {
-  constexpr std::chrono::milliseconds kFirstRequestGrace{
-      200};  // for the first request of a connection at shutdown
+  // Time for the first request of a connection to arrive after shutdown begins.
+  constexpr std::chrono::milliseconds kFirstRequestGrace{200};
   bool fresh = std::exchange(fresh_, false);
   reading_since_ = Clock::now();
   writing_since_.reset();
@@ -189,7 +189,7 @@ bool Connection::wait_to_receive(Clock::time_point deadline) {
 
 HttpError Connection::too_late(const std::string& part) const {
   if (is_evicted())
-    return {408, part + " arrived too slowly, and other clients need the connection (connections)"};
+    return {408, part + " arrived too slowly while the limit on connections was reached (connections)"};
   if (shutdown_deadline_)
     return {503, part + " did not arrive before the service shut down", {{"Retry-After", "1"}}};
   return {408, part + " did not arrive in time"};
@@ -285,7 +285,7 @@ void Connection::shut_down() const {
 bool Connection::write(std::initializer_list<std::string_view> pieces) {
   assert(pieces.size() <= kMaxPieces);
   std::array<iovec, kMaxPieces> vectors;
-  msghdr left{};  // unsent rest
+  msghdr left{};  // unsent bytes
   left.msg_iov = vectors.data();
   std::size_t size = 0;
   for (const std::string_view piece : pieces) {

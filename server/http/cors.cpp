@@ -14,15 +14,15 @@ bool is_listed(const Request& request, const std::vector<std::string>& origins) 
                                [&](const std::string& listed) { return listed == "*" || listed == *origin; });
 }
 
-// Throws HttpError 403 if `host` is a domain with a dot and not that of a listed origin.
+// Throws HttpError 403 if `host` is a domain name with a dot, unless a listed origin has this host.
 void require_known(const std::string& host, const std::vector<std::string>& origins) {
   const bool listed = std::any_of(origins.begin(), origins.end(), [&](const std::string& origin) {
     return origin == "*" || equal_ignoring_case(origin.substr(origin.find("//") + 2), host);
   });
-  const bool may_be_owned = host.find('.') != std::string::npos;  // by someone on the internet
+  const bool may_be_owned = host.find('.') != std::string::npos;  // by the owner of a public domain
   if (!listed && may_be_owned && !is_address_or_localhost(host))
-    throw HttpError(403, "unknown host " + host.substr(0, 100) +
-                             " (must be an IP address, localhost or the host of one of cors_origins)");
+    throw HttpError(403, "Host must be an IP address, localhost or the host of one of cors_origins (got " +
+                             host.substr(0, 100) + ")");
 }
 
 }  // namespace
@@ -48,7 +48,8 @@ void reject_cross_origin(const Request& request, const std::vector<std::string>&
   const bool own = slashes != std::string::npos && equal_ignoring_case(origin->substr(slashes + 2), host) &&
                    (domains || is_address_or_localhost(host));
   if (!own && !is_listed(request, origins))
-    throw HttpError(403, "origin " + origin->substr(0, 100) + " must be one of cors_origins to change data");
+    throw HttpError(403, "Origin of a request that changes data must be one of cors_origins (got " +
+                             origin->substr(0, 100) + ")");
 }
 
 void reject_unknown_host(const Request& request, const std::vector<std::string>& origins) {

@@ -13,13 +13,13 @@ namespace orrery {
 std::optional<Response> preflight(const Request& request, const std::vector<std::string>& origins);
 
 // Rejects requests from pages of other, unlisted origins, except with the methods GET, HEAD and OPTIONS.
-// Browsers send some such requests without a preflight. `domains`: whether the service's own origin may be a
-// domain. Must be false without access control, since a domain's owner can point it at this machine (DNS
+// Browsers send simple requests without a preflight. `domains`: whether the service's own origin may be a
+// domain. Must be false without access control, since the owner of a domain can point it at this machine (DNS
 // rebinding). Throws HttpError 403.
 void reject_cross_origin(const Request& request, const std::vector<std::string>& origins, bool domains);
 
-// Rejects requests for a host that is a domain with a dot and not that of a listed origin. The owner of such
-// a domain can point it at this machine and read responses (DNS rebinding). Throws HttpError 403.
+// Rejects requests for a host that is a domain name with a dot, unless a listed origin has this host. The
+// owner of a domain can point it at this machine and read responses (DNS rebinding). Throws HttpError 403.
 void reject_unknown_host(const Request& request, const std::vector<std::string>& origins);
 
 // Adds the headers that let pages of a listed origin read the response.

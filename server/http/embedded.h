@@ -5,7 +5,7 @@
 
 namespace orrery {
 
-// A file of web/ or scenes/ that is compiled into the program.
+// A file of web/, scenes/ or server/routes/ that is compiled into the program.
 struct EmbeddedFile {
   std::string_view path;   // from the repository root: "web/index.html", "scenes/paper.json"
   std::string_view bytes;  // lives as long as the program

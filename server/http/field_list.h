@@ -8,13 +8,13 @@
 // Header fields whose values are lists (RFC 9110, 5.6.1).
 namespace orrery {
 
-std::string_view trimmed(std::string_view text);  // without leading and trailing blanks and tabs
+// Returns `text` without leading and trailing blanks and tabs.
+std::string_view trimmed(std::string_view text);
 
 // Returns the values of all fields with this name as one list, separated by ", ".
 std::string joined(const Fields& headers, std::string_view name);
 
-// Calls `part` with each trimmed entry of the list. Separators in quotes do not count; empty entries are
-// skipped.
+// Calls `part` with each trimmed entry of the list. Ignores separators in quotes and skips empty entries.
 template <class Part>
 void for_each_entry(std::string_view list, char separator, const Part& part) {
   bool quoted = false;
@@ -34,11 +34,11 @@ void for_each_entry(std::string_view list, char separator, const Part& part) {
 // Whether `text` ends within a quoted string.
 bool ends_in_quotes(std::string_view text);
 
-// Returns the value of parameter `name` of a list entry without quotes: "0.5" for `q` in "image/*;q=0.5".
+// Returns the unquoted value of parameter `name` of a list entry: "0.5" for `q` in "image/*;q=0.5".
 // Returns "" if the parameter is missing or repeated.
 std::string_view parameter_of(std::string_view entry, std::string_view name);
 
-// Returns the quality value of an entry, 0..1: its q, or 1.
+// Returns the weight of an entry: its parameter q, 0 to 1 if well-formed, or 1 without it (RFC 9110, 12.4.2).
 double weight_of(std::string_view entry);
 
 }  // namespace orrery

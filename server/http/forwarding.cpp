@@ -14,18 +14,18 @@ namespace {
 constexpr std::size_t kLongestPrefix = 200;
 constexpr const char* kNobody = "for=unknown";  // RFC 7239, 6.3
 
-// Returns the entries of a header, the nearest proxy's last.
+// Returns the entries of a header. The last entry is the nearest proxy's.
 std::vector<std::string> entries_of(const Request& request, std::string_view name) {
   std::vector<std::string> entries;
   std::string list = joined(request.headers, name);
   for (char& c : list)
-    if (c == '"') c = ' ';  // not quoting here: a client's quote would hide what a proxy has appended
+    if (c == '"') c = ' ';  // ignored: a client's open quote would hide entries that a proxy has appended
   for_each_entry(list, ',', [&](std::string_view entry) { entries.emplace_back(entry); });
   return entries;
 }
 
-// Returns the entries of Forwarded, the nearest proxy's last. Lines are parsed separately, so that a client's
-// open quote ends with its line. A line that ends within quotes becomes one unknown entry.
+// Returns the entries of Forwarded. The last entry is the nearest proxy's. Lines are parsed separately, so
+// that a client's open quote ends with its line. A line that ends within quotes becomes one unknown entry.
 std::vector<std::string> entries_of_forwarded(const Request& request) {
   std::vector<std::string> entries;
   for (const auto& [name, line] : request.headers) {
@@ -38,7 +38,7 @@ std::vector<std::string> entries_of_forwarded(const Request& request) {
   return entries;
 }
 
-// Returns the node that an entry of Forwarded names, or "" if the entry has no `for`.
+// Returns the `for` node of an entry of Forwarded, or "" if the entry has no `for`.
 std::string node_of(const std::string& entry) {
   const std::string_view node = parameter_of(entry, "for");
   if (!node.empty()) return std::string(node);
@@ -114,8 +114,8 @@ Forwarding::Forwarding(const std::vector<std::string>& trusted_proxies, std::str
     : trusted_(trusted_proxies.begin(), trusted_proxies.end()), prefix_(path_prefix) {
   if (prefix_.empty()) return;
   if (!is_prefix(prefix_))
-    throw InputError("", "must be a path such as /render, of letters, digits and - . _ ~, of at most " +
-                             std::to_string(kLongestPrefix) + " bytes, without / at its end (got " +
+    throw InputError("", "must be a path such as /render with only letters, digits and - . _ ~ /, at most " +
+                             std::to_string(kLongestPrefix) + " bytes and no trailing / (got " +
                              prefix_.substr(0, 80) + ")");
 }
 

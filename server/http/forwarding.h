@@ -21,10 +21,10 @@ class Forwarding {
 
   bool trusts(const IpAddress& peer) const;
 
-  // Sets client, prefix and forwarded_host of a request from `peer`, and strips the prefix from its path if
-  // the proxy has not. The client is the last address in the list that is no trusted proxy. If Forwarded and
-  // X-Forwarded-For name different clients, one of them is forged, and `peer` becomes the client. A request
-  // for the prefix itself without a trailing slash gets an empty path.
+  // Sets client, prefix and forwarded_host of a request from `peer`. Strips the prefix from its path unless
+  // the proxy has stripped it. The client is the last listed address that is not a trusted proxy. If
+  // Forwarded and X-Forwarded-For name different clients, one may be forged, and `peer` becomes the client. A
+  // request for the prefix itself without a trailing slash gets an empty path.
   void apply(const IpAddress& peer, Request& request) const;
 
  private:

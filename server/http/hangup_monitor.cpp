@@ -15,7 +15,7 @@
 namespace orrery {
 namespace {
 
-constexpr std::uint64_t kEnd = 0;  // number of end_; no socket has it
+constexpr std::uint64_t kEnd = 0;  // number of end_; sockets are numbered from 1
 
 void control(int epoll, int operation, int fd, std::uint32_t events, std::uint64_t number) {
   epoll_event event{.events = events, .data = {.u64 = number}};
@@ -26,7 +26,7 @@ void control(int epoll, int operation, int fd, std::uint32_t events, std::uint64
 constexpr int kProbes = 4;
 constexpr std::chrono::milliseconds kProbeInterval{50};
 
-// Sends a probe. Returns false if nothing can be sent any more.
+// Sends a probe. Returns false if the socket is broken or its send buffer is full.
 bool send_interim(int fd) {
   constexpr std::string_view kInterim = "HTTP/1.1 100 Continue\r\n\r\n";
   const ssize_t sent = send(fd, kInterim.data(), kInterim.size(), MSG_DONTWAIT | MSG_NOSIGNAL);

@@ -11,12 +11,13 @@
 
 namespace orrery {
 
-// Cancels work whose client has disconnected. One thread watches all sockets. Thread-safe.
+// Cancels the work of clients that have disconnected. One thread watches all sockets. Thread-safe.
 //
 // A client that has shut down its sending side may still wait for its response, and looks like one that has
 // closed its socket. The monitor probes it with interim responses, "100 Continue", which every HTTP/1.1
-// client skips (RFC 9110, 15.2). A closed socket answers a probe with a reset. A relay needs several probes:
-// it learns from the first that its client has closed, cannot send the second, and is closed at the third.
+// client skips (RFC 9110, 15.2). A closed socket answers a probe with a reset. A TCP relay needs several
+// probes. The first one makes the client's machine reset the relay's connection. The relay fails to forward
+// the second one and has closed its socket when the third one arrives.
 class HangupMonitor {
  public:
   // Throws std::system_error if no descriptors are left.
@@ -30,8 +31,8 @@ class HangupMonitor {
     ~Registration() { monitor_.forget(fd_, number_); }
     Registration(const Registration&) = delete;
 
-    // Ends probing, since the response begins. A client that then shuts down its sending side has
-    // disconnected.
+    // Ends probing when the response begins. From then on, a client that shuts down its sending side counts
+    // as disconnected.
     void stop_probing() { monitor_.stop_probing(number_); }
 
    private:
@@ -44,16 +45,16 @@ class HangupMonitor {
   };
 
   // Requests a stop of `work` on the monitor's thread when the client closes its socket or the connection
-  // breaks, even if that has already happened. Stop callbacks must be short. A socket may be watched once at
-  // a time. `probes_left`: whether to send probes. Without probes, a client that shuts down its sending side
-  // counts as disconnected.
+  // breaks, even if that has already happened. Stop callbacks must be short. A socket must not have two
+  // registrations at the same time. `probes_left`: whether to send probes. Without probes, a client that
+  // shuts down its sending side counts as disconnected.
   [[nodiscard]] Registration watch(int fd, std::stop_source work, bool probes_left);
 
  private:
   struct Client {
     int fd;
     std::stop_source work;
-    int probes_left;  // probes left
+    int probes_left;
   };
   struct NextProbe {
     Clock::time_point at;
@@ -73,7 +74,7 @@ class HangupMonitor {
   std::mutex mutex_;
   std::uint64_t last_number_ = 0;            // guarded by mutex_
   std::map<std::uint64_t, Client> clients_;  // by number; guarded by mutex_
-  std::deque<NextProbe> next_probes_;        // next first; for thread_
+  std::deque<NextProbe> next_probes_;        // next first; used only by thread_
   std::thread thread_;                       // last: uses the other members
 };
 

@@ -11,7 +11,7 @@
 namespace orrery {
 namespace {
 
-// CONNECT is missing because its form of target is not supported.
+// CONNECT is missing because its target has the unsupported authority form (RFC 9112, 3.2.3).
 constexpr std::array<std::string_view, 8> kMethods{"GET",    "HEAD",    "POST",  "PUT",
                                                    "DELETE", "OPTIONS", "TRACE", "PATCH"};
 
@@ -31,8 +31,7 @@ void parse_request_line(std::string_view line, Head& head) {
   const bool visible =
       std::all_of(target.begin(), target.end(), [](char c) { return c > 0x20 && c != 0x7F; });
   if (target.empty() || !visible)
-    throw HttpError(400,
-                    "URL must not be empty or contain blanks and control characters; escape them with %");
+    throw HttpError(400, "URL must not be empty or contain unescaped blanks or control characters");
   if (version != "HTTP/1.1" && version != "HTTP/1.0") {
     if (version.starts_with("HTTP/"))
       throw HttpError(505,
@@ -76,8 +75,8 @@ void check_framing(Head& head) {
     if (equal_ignoring_case(name, "Host")) {
       ++hosts;
       if (!value.empty() && !is_authority(value))
-        throw HttpError(
-            400, "Host must be a host with an optional port (got " + std::string(value.substr(0, 100)) + ")");
+        throw HttpError(400,
+                        "Host must be HOST or HOST:PORT (got " + std::string(value.substr(0, 100)) + ")");
     }
     if (equal_ignoring_case(name, "Transfer-Encoding")) check_transfer_coding(value, head);
     if (!equal_ignoring_case(name, "Content-Length")) continue;
@@ -92,7 +91,7 @@ void check_framing(Head& head) {
   if (head.chunked && head.content_length)
     throw HttpError(400, "Content-Length cannot be used with Transfer-Encoding");
   if (hosts > 1 || (hosts == 0 && head.minor_version == 1))
-    throw HttpError(400, "request must have one Host header (got " + std::to_string(hosts) + ")");
+    throw HttpError(400, "request must have exactly one Host header (got " + std::to_string(hosts) + ")");
 }
 
 // Whether a Connection header lists `word`.

@@ -36,9 +36,9 @@ bool is_field_text(std::string_view text);
 // 505.
 Head parse_head(std::string_view bytes);
 
-// Throws the error of parse_head() as soon as it is certain. Rejects TLS handshakes, HTTP/0.9 lines and lines
-// that end with LF without waiting for the end of the head. `bytes`: input so far, at most up to the empty
-// line; the bytes before `from` were screened already.
+// Throws an error of parse_head() before the head is complete. Rejects TLS handshakes, HTTP/0.9 lines and
+// lines that end with LF without CR. `bytes`: input so far, at most up to the empty line. The bytes before
+// `from` were screened by an earlier call.
 void screen_head(std::string_view bytes, std::size_t from);
 
 }  // namespace orrery

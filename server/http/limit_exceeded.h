@@ -6,7 +6,7 @@
 
 namespace orrery {
 
-// Thrown if a limit of the service is reached, so that the request cannot be served now.
+// Thrown when a limit of the service is reached, so that the request cannot be served now.
 class LimitExceeded : public Busy {
  public:
   // `limit`: name in /v1/limits. Must live as long as the program.
@@ -18,7 +18,7 @@ class LimitExceeded : public Busy {
   const char* limit_;
 };
 
-// Thrown if the client has reached its share of a limit. Rejects its current or its newest request.
+// Thrown when the client has reached its own limit, such as half of a quota.
 class ClientLimitExceeded : public LimitExceeded {
  public:
   using LimitExceeded::LimitExceeded;

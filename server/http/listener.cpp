@@ -67,8 +67,8 @@ int Listener::accept() {
   if (fd < 0) return -1;
   const int on = 1;
   setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-  // Limits the unsent bytes in the kernel. More would become outdated there: a slow viewer would see every
-  // frame late instead of skipping some.
+  // Limits the unsent bytes in the kernel. With a larger limit, a slow viewer would see every frame late
+  // instead of skipping some.
   const int max_unsent = 128 * 1024;
   setsockopt(fd, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &max_unsent, sizeof max_unsent);
   return fd;

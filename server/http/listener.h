@@ -15,7 +15,7 @@ class Listener {
   int fd() const { return fd_; }
   int port() const { return port_; }
 
-  // Returns the next connection, or -1 if none is pending or no descriptor is left.
+  // Returns the socket of the next connection, or -1 if none is pending or accepting fails.
   int accept();
   // Whether the last accept() failed for lack of descriptors or memory.
   bool out_of_room() const { return out_of_room_; }

@@ -18,7 +18,7 @@ namespace orrery {
 
 struct Route;
 
-// Names and values in order of arrival.
+// Names and values of header fields or query parameters, in order of arrival.
 using Fields = std::vector<std::pair<std::string, std::string>>;
 
 // Returns the value of the first field with this name, ignoring case, or nullopt.
@@ -26,8 +26,8 @@ std::optional<std::string> find_field(const Fields& fields, std::string_view nam
 
 class App;
 
-// Bytes of a request body. Only App::read() and App::add_asset() can read them. They charge the client's
-// memory account, wait for a turn if the work is long, and stop when the client disconnects.
+// Bytes of a request body. Only App::read() and App::add_asset() can read them. These charge memory to the
+// client, wait for a slot if the work is long, and stop when the client disconnects.
 class Body {
  public:
   Body() = default;
@@ -52,13 +52,13 @@ struct Request {
   std::vector<std::string> segments;  // decoded path segments
   const Route* route = nullptr;       // route with this path, or null
   std::string id;                     // sent by the client or generated; letters, digits, . _ -
-  std::string client;                 // address, or name of the token
+  std::string client;                 // network of the client, or name of its token
   std::string forwarded_host;         // host requested by the client according to a proxy, or ""
   std::string prefix;                 // path prefix that clients see, stripped from `path`: "" or "/render"
   Fields query;                       // decoded; names are unique
   Fields path_values;                 // values of the route's {placeholders}
   Fields headers;
-  Body body;  // if the route reads one
+  Body body;  // empty unless the route reads a body
   std::chrono::steady_clock::time_point start;
 
   std::stop_token gone;  // stop requested when the client disconnects
@@ -72,8 +72,8 @@ struct Request {
 class Sink {
  public:
   virtual ~Sink() = default;
-  // Writes the three pieces in order and waits. Returns false if the client has disconnected. Throws
-  // LimitExceeded if too many response bytes are being sent.
+  // Writes the three pieces in order and blocks until the kernel has accepted them. Returns false if the
+  // client has disconnected. Throws LimitExceeded if `more` exceeds the quota of response bytes.
   virtual bool write(std::string_view bytes, const SharedBytes& more = {}, std::string_view end = {}) = 0;
 };
 
@@ -82,12 +82,11 @@ struct Response {
   Fields headers = {};
   SharedBytes body = {};
   SharedBytes gzip = {};  // compressed body if cached, or empty
-  // Writer of a streamed body, called once instead of sending `body`. If it throws, the response is cut off
-  // so that the client cannot take it for complete, and the reason is logged.
+  // Writer of a streamed body, called once instead of sending `body`. If it throws, the response is truncated
+  // in a way that the client detects, and the exception is logged.
   std::function<void(Sink&)> stream = {};
-  // For the log: rays traced for this response, and internal errors.
-  std::uint64_t rays = 0;
-  std::string note = {};
+  std::uint64_t rays = 0;         // traced for this response, for the log
+  std::string note = {};          // text of an internal error for the log, or ""
   const char* refusal = nullptr;  // limit that rejected the request, or "draining" during shutdown
 
   Response& set(std::string_view name, std::string value);  // replaces the header
@@ -96,10 +95,10 @@ struct Response {
 Response text_response(int status, std::string_view type, SharedBytes body);
 Response json_response(int status, std::string json);
 
-// An error of HTTP itself, with its status.
+// Thrown when a request violates HTTP or a limit. Has the status of the response.
 class HttpError : public Error {
  public:
-  // `limit`: name of the limit that was hit, or null. Must live as long as the program.
+  // `limit`: name of the exceeded limit, or null. Must live as long as the program.
   HttpError(int status, const std::string& detail, Fields headers = {}, const char* limit = nullptr)
       : Error(detail), status_(status), headers_(std::move(headers)), limit_(limit) {}
   int status() const noexcept { return status_; }

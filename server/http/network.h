@@ -18,8 +18,8 @@ class IpAddress {
   static IpAddress of_peer(int fd);
 
   bool is_v4() const;
-  // Returns the identity of a client: its IPv4 address, or the upper half of its IPv6 address, which the
-  // client cannot choose. Returns "" for the unspecified address.
+  // Returns the identity of a client: its IPv4 address, or the upper 64 bits of its IPv6 address. A client
+  // can choose the lower 64 bits itself. Returns "" for the unspecified address.
   std::string network() const;
   const std::array<std::uint8_t, 16>& bytes() const { return bytes_; }
 
@@ -32,8 +32,8 @@ class IpAddress {
 // Addresses with a common prefix.
 class IpNetwork {
  public:
-  // Parses "10.0.0.0/8", "fd00::/8" or one address. Throws InputError with an empty pointer for any other
-  // text, and for bits set after the prefix.
+  // Parses "10.0.0.0/8", "fd00::/8" or a single address. Throws InputError with an empty pointer for any
+  // other text, and for bits set after the prefix.
   explicit IpNetwork(std::string_view text);
   bool contains(const IpAddress& address) const;
 

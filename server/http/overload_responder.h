@@ -6,15 +6,15 @@
 
 namespace orrery {
 
-// Rejects connections that no thread is free for, without reading their requests. Not thread-safe.
+// Rejects connections for which no thread is free, without reading their requests. Not thread-safe.
 class OverloadResponder {
  public:
-  static constexpr std::size_t kMost = 128;  // sockets kept open until their clients have read the response
+  static constexpr std::size_t kMost = 128;  // sockets kept open so that their clients can read the response
 
   ~OverloadResponder();
   // Takes ownership of the socket and sends `bytes`, the whole response.
   void refuse(int fd, std::string_view bytes);
-  // Closes the sockets whose time to read the response has passed.
+  // Closes the sockets whose response was sent at least 1 s ago.
   void close_old();
   // Returns the time of the next close, or time_point::max() if no socket is open.
   std::chrono::steady_clock::time_point next_close() const;

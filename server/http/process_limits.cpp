@@ -33,8 +33,8 @@ std::size_t allowed_addresses() {
 std::size_t addresses_for(std::size_t connections, std::size_t renderers) {
   constexpr std::size_t kProgram = 256 << 20, kUsualStack = 8 << 20;
   constexpr std::size_t kOthers = 8;  // accept, signals, timers and others
-  // Each renderer has a second thread for background work. Each of the two may have another one while it
-  // yields.
+  // Each render thread has a second thread for background work. A step that yields blocks its thread, so that
+  // one more thread runs in its place.
   const std::size_t threads = connections + kHealthConnections + 4 * renderers + kOthers;
   rlimit stack{};
   getrlimit(RLIMIT_STACK, &stack);

@@ -4,9 +4,9 @@
 
 namespace orrery {
 
-inline constexpr std::size_t kHealthConnections = 16;  // for the health port
+inline constexpr std::size_t kHealthConnections = 16;  // limit of the health port
 
-// Returns the number of descriptors that a server with `connections` connections may need, including other
+// Returns the maximum number of file descriptors of a server with `connections` connections, including other
 // files.
 std::size_t descriptors_for(std::size_t connections);
 
@@ -16,7 +16,7 @@ std::size_t allow_descriptors(std::size_t count);
 // Returns the address space limit of the process in bytes, or SIZE_MAX if it is unlimited.
 std::size_t allowed_addresses();
 // Returns the maximum address space in bytes of a server with `connections` connections and `renderers`
-// render threads: stacks and program, without the memory limit.
+// render threads. Includes stacks and program, but not the memory counted by memory_bytes.
 std::size_t addresses_for(std::size_t connections, std::size_t renderers);
 
 }  // namespace orrery

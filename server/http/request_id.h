@@ -5,7 +5,7 @@
 
 namespace orrery {
 
-// Returns 2 * `bytes` random hexadecimal digits, unguessable from 16 bytes on. REQUIRES: bytes <= 64.
+// Returns 2 * `bytes` random hexadecimal digits. 16 bytes or more cannot be guessed. REQUIRES: bytes <= 64.
 std::string random_hex(std::size_t bytes);
 
 inline std::string make_request_id() { return random_hex(8); }

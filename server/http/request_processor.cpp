@@ -9,7 +9,7 @@
 namespace orrery {
 namespace {
 
-constexpr int kClientGone = 499;  // status of cancelled requests
+constexpr int kClientGone = 499;  // status of requests whose client has disconnected
 
 // Replaces Host by the host of an absolute target, which takes precedence (RFC 9112, 3.2.2).
 void name_host(Fields& headers, const std::string& authority) {
@@ -46,12 +46,12 @@ bool RequestProcessor::exchange(Connection& connection) {
     framing = {.head_only = head.method == "HEAD", .minor_version = head.minor_version, .keep_alive = false};
     read_head_into(request, head, connection.peer(), forwarding_);
   } catch (const HttpError&) {
-    if (connection.is_disconnected()) return false;  // disconnected without a request
+    if (connection.is_disconnected()) return false;  // disconnected before a complete request
     return send(connection, request, handler_.refuse(request, std::current_exception()), framing);
   }
   framing.keep_alive = head.keep_alive;
-  const std::string client = request.client;  // by address; a token may replace it in `request`
-  ByteQuota::Share body(bodies_, client);     // held while the body is used
+  const std::string client = request.client;  // network; admit() may set request.client to a token's name
+  ByteQuota::Share body(bodies_, client);     // charged until the response is sent
   HttpServer::Admitted admitted;
   try {
     admitted = handler_.admit(request);
@@ -81,7 +81,7 @@ Response RequestProcessor::refuse(const Connection& connection, const Request& r
                                   std::exception_ptr error) const {
   if (connection.is_evicted())
     error = std::make_exception_ptr(ClientLimitExceeded(
-        "other clients need a connection, and this address has the most (connections)", 1, "connections"));
+        "all connections were in use, and this client had the most (connections)", 1, "connections"));
   return handler_.refuse(request, error);
 }
 
@@ -100,7 +100,7 @@ bool RequestProcessor::send(Connection& connection, const Request& request, Resp
   const std::uint64_t before = connection.bytes_written();
   const bool written = write_response(connection, response, framing, sender);
   if (response.stream) {
-    const HandlerSlots::Wait released;  // the stream's end may wait for its threads
+    const HandlerSlots::Wait released;  // the stream's destructor may wait for its threads
     response.stream = nullptr;
   }
   // A client that disconnects after the last byte has received the whole response.

@@ -20,7 +20,7 @@ class RequestProcessor {
       : handler_(handler),
         monitor_(monitor),
         slots_(options.handlers),
-        bodies_(options.max_bodies, "bodies_bytes", "request bodies"),
+        bodies_(options.max_bodies, "request_buffer_bytes", "request bodies"),
         answers_(options.max_answers),
         forwarding_(options.forwarding) {}
 

@@ -11,14 +11,15 @@
 namespace orrery {
 
 // Byte quota of responses being sent. Bytes shared by several connections count once. A client may use half
-// of the quota, or more for a single response. A response of any size is sent if no other is. Thread-safe.
+// of the quota. A response may exceed this half if the client has no other, and the quota if no other
+// response is being sent. Thread-safe.
 class ResponseQuota {
  public:
   explicit ResponseQuota(std::size_t most) : max_(most) {}
 
   using Share = std::shared_ptr<const void>;
-  // Charges `bytes` to `client` until the share is destroyed. Up to 64 KiB are free (null share). Throws
-  // LimitExceeded or ClientLimitExceeded.
+  // Charges `bytes` to `client` until the share is destroyed. Does not charge up to 64 KiB (null share).
+  // Throws LimitExceeded or ClientLimitExceeded.
   Share take(const SharedBytes& bytes, const std::string& client) {
     constexpr std::size_t kFree = 64 * 1024;
     if (bytes.size() <= kFree) return nullptr;
@@ -27,7 +28,7 @@ class ResponseQuota {
   }
 
  private:
-  static constexpr const char* kName = "answers_bytes";
+  static constexpr const char* kName = "response_buffer_bytes";
   static constexpr double kRetry_s = 2;
 
   struct Usage {

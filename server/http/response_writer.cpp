@@ -26,7 +26,7 @@ void append_header(std::string& text, std::string_view name, std::string_view va
   text += "\r\n";
 }
 
-// Writes a body in chunks, or plainly up to the end of the connection (RFC 9112, 7.1 and 6.3).
+// Writes a body in chunks, or without framing up to the end of the connection (RFC 9112, 7.1 and 6.3).
 class BodySink final : public Sink {
  public:
   BodySink(Connection& connection, bool chunked, const Sender& sender)
@@ -93,7 +93,7 @@ bool write_response(Connection& connection, Response& response, const Framing& f
     response.stream(sink);
   } catch (const std::exception& error) {
     response.note = error.what();
-    if (framing.minor_version == 0) connection.reset_on_close();  // a normal end would complete the body
+    if (framing.minor_version == 0) connection.reset_on_close();  // a normal close would end the body
     return false;
   }
   return sink.finish();

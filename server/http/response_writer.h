@@ -11,7 +11,7 @@ namespace orrery {
 // Message framing of a response (RFC 9112, 6).
 struct Framing {
   bool head_only = false;  // the request was HEAD: no body follows
-  int minor_version = 1;   // the request's; HTTP/1.0 has no chunks
+  int minor_version = 1;   // HTTP/1.x of the request; HTTP/1.0 has no chunks
   bool keep_alive = true;  // false: the connection closes after the response
 };
 
@@ -30,9 +30,9 @@ struct Sender {
   std::stop_token gone = {};  // stop requested when the client disconnects
 };
 
-// Writes the response. Returns false if the client has disconnected or if `response.stream` threw; the error
-// text is then in `response.note`. A stream ends when the client disconnects; its bytes count against
-// `sender.answers`. REQUIRES: keep_alive is false for a stream to an HTTP/1.0 client.
+// Writes the response. Returns false if the client has disconnected or if `response.stream` threw. In the
+// second case, `response.note` is the text of the exception. A stream ends when the client disconnects. Its
+// bytes count against `sender.answers`. REQUIRES: keep_alive is false for a stream to an HTTP/1.0 client.
 bool write_response(Connection& connection, Response& response, const Framing& framing, const Sender& sender);
 
 }  // namespace orrery

@@ -42,7 +42,7 @@ class Alarm {
 };
 
 constexpr int kNothing = -1;                     // no descriptor to wait for
-constexpr std::chrono::milliseconds kRetry{50};  // between attempts to accept without free descriptors
+constexpr std::chrono::milliseconds kRetry{50};  // interval of accept() attempts while no descriptor is left
 
 // Waits until `a` or `b` is readable or the deadline has passed.
 void wait_for_either(int a, int b, Clock::time_point deadline) {
@@ -122,9 +122,9 @@ class HttpServer::Parts {
     }
   }
 
-  // Returns the maximum number of connections of one network. A quarter remains for the others.
+  // Returns the maximum number of connections of one network. One quarter is reserved for other networks.
   std::size_t share_of_one() const { return options_.max_connections - options_.max_connections / 4; }
-  // Counts another connection of the network. Returns the new number.
+  // Counts a new connection of the network. Returns the network's number of connections.
   std::size_t count(const std::string& network) {
     const std::lock_guard lock(mutex_);
     return ++of_network_[network];
@@ -136,16 +136,16 @@ class HttpServer::Parts {
   }
 
   struct Candidate {
-    // Eviction order: most connections of the client first, then by kind of wait, then waits of 100 ms or
-    // more before shorter ones. The oldest of the longer waits and the newest of the shorter ones come first.
+    // Eviction order: clients with the most connections first, then by kind of wait. Waits for the client of
+    // 100 ms or more precede shorter ones, the longest first. All other waits are ordered newest first.
     std::tuple<std::ptrdiff_t, WaitState::Kind, bool, Clock::duration> rank;
     Connection* connection;
   };
-  // Returns the connections that may be evicted for a newcomer, in eviction order. `of_newcomer`: connections
-  // of the newcomer's client, including the new one. Requires mutex_.
+  // Returns the connections that may be evicted for a newcomer, in eviction order. `of_newcomer`: number of
+  // connections of the newcomer's client, including the new one. Requires mutex_.
   std::vector<Candidate> candidates(std::size_t of_newcomer) const {
-    constexpr std::chrono::milliseconds kWhile{100};  // input that is sent at once arrives by then
-    std::map<std::string, std::size_t> counts;        // by client, possibly behind a proxy
+    constexpr std::chrono::milliseconds kWhile{100};  // a request that is sent at once arrives by then
+    std::map<std::string, std::size_t> counts;        // by client, which may be behind a proxy
     for (const Connection* connection : open_) ++counts[connection->client()];
     std::vector<Candidate> found;
     for (Connection* connection : open_) {
@@ -162,9 +162,9 @@ class HttpServer::Parts {
     return found;
   }
 
-  // Evicts a connection for a newcomer of that network. Returns false if none can be evicted. `own`: evicts
-  // only connections of the same network that wait for their client. `known`: the newcomer's client is that
-  // network.
+  // Evicts a connection for a newcomer from `network`. Returns false if none can be evicted. `own`: evicts
+  // only connections of the same network that wait for their client. `known`: the network identifies the
+  // newcomer's client, because it is not a trusted proxy.
   bool evict(const std::string& network, bool own, bool known) {
     const std::lock_guard lock(mutex_);
     const std::vector<Candidate> found = candidates(known ? of_network_[network] : 1);
@@ -176,7 +176,7 @@ class HttpServer::Parts {
     });
   }
 
-  // Returns the response for rejected connections, whose requests are not read.
+  // Returns the response for rejected connections. Their requests are not read.
   std::string refusal(bool over_share) const {
     Request request;
     request.start = Clock::now();
@@ -194,7 +194,7 @@ class HttpServer::Parts {
     return response_head(response, {.keep_alive = false}).append(response.body);
   }
 
-  // Waits until no request is being answered. Returns false if one still is at the deadline.
+  // Waits until no request is being answered. Returns false at the deadline.
   bool answer_all(Clock::time_point deadline) {
     while (busy_ > 0 && Clock::now() < deadline) {
       wait_for_connection_or(idle_, deadline);
@@ -214,7 +214,7 @@ class HttpServer::Parts {
 
   using Open = std::list<Connection*>;
 
-  // Returns false if the connection ends with the response.
+  // Reads and answers one request. Returns false if the connection must close.
   bool answer(Connection& connection) {
     struct BusyGuard {
       Parts& parts;

@@ -17,31 +17,31 @@ namespace orrery {
 // at most three quarters of the connections.
 //
 // When all connections are in use, a new one evicts a connection of the client with the most connections.
-// Connections that wait for their client are evicted first. Requests that wait for their turn are next
-// (answered 429), then started work or streams that wait to go on. A client with no more connections than the
-// newcomer's loses only those that have waited for the client for 100 ms. If no connection can be evicted,
-// the newcomer is rejected.
+// Connections that wait for their client are evicted first, then requests that wait for a handler slot
+// (status 429), then started requests and streams that wait for other threads. A client that has at most as
+// many connections as the newcomer's client loses only those that have waited for the client for 100 ms. If
+// no connection can be evicted, the newcomer is rejected.
 class HttpServer {
  public:
   struct Options {
     std::string host = "127.0.0.1";
     int port = 0;                         // 0: any free port
-    std::size_t max_bodies = 256 << 20;   // request bodies being read or used (bodies_bytes)
-    std::size_t max_answers = 256 << 20;  // responses being sent (answers_bytes)
+    std::size_t max_bodies = 256 << 20;   // request bodies being read or used (request_buffer_bytes)
+    std::size_t max_answers = 256 << 20;  // responses being sent (response_buffer_bytes)
     std::size_t max_connections = 256;
-    std::size_t handlers = 4;        // that compute at a time (HandlerSlots)
-    std::chrono::seconds grace{30};  // for running requests after drain()
+    std::size_t handlers = 4;        // maximum that compute at the same time
+    std::chrono::seconds grace{30};  // time for running requests after drain()
     Forwarding forwarding = {};      // trusted proxies may use all connections
   };
 
-  // Result of admission by the request's head.
+  // Result of the admission of a request, after its head is read.
   struct Admitted {
     std::optional<BodyLimit> body;  // limit of the body to read first; nullopt: no body is read
     std::function<Response(Request&)> answer;
   };
 
-  // Functions that are called on several threads at once. Exceptions of admit() and Admitted::answer() are
-  // passed to refuse(); the other functions must not throw.
+  // Functions that are called on several threads at the same time. Exceptions of admit() and
+  // Admitted::answer() are passed to refuse(). The other functions must not throw.
   struct Handler {
     std::function<Admitted(Request&)> admit;
     // Returns the response to an exception. The request may be incomplete.
@@ -52,14 +52,14 @@ class HttpServer {
     std::function<void()> grace_over;
   };
 
-  // Starts to listen. Throws Error if the address is unavailable.
+  // Starts listening. Throws Error if the address is unavailable.
   HttpServer(const Options& options, Handler handler);
   ~HttpServer();
 
   int port() const;
 
   std::size_t connections() const;  // open connections
-  std::uint64_t refused() const;    // connections rejected for lack of room
+  std::uint64_t refused() const;    // connections rejected because too many were open
   bool exhausted() const;           // whether a new client's connection would be rejected
 
   // Accepts connections until drain() is called and the last request is answered.

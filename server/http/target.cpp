@@ -33,7 +33,7 @@ std::size_t utf8_length(std::string_view text, std::size_t i) {
 void require_clean(std::string_view text) {
   for (std::size_t i = 0; i < text.size();) {
     const std::size_t length = utf8_length(text, i);
-    if (length == 0) throw HttpError(400, "URL must be UTF-8");
+    if (length == 0) throw HttpError(400, "URL must be valid UTF-8");
     if (length == 1 && (static_cast<unsigned char>(text[i]) < 0x20 || text[i] == 0x7F))
       throw HttpError(400, "URL must not contain a control character");
     i += length;
@@ -50,7 +50,7 @@ std::string decode(std::string_view text, bool plus_is_space) {
     } else {
       const int high = i + 2 < text.size() ? digit_of(text[i + 1]) : -1;
       const int low = i + 2 < text.size() ? digit_of(text[i + 2]) : -1;
-      if (high < 0 || low < 0) throw HttpError(400, "URL must have two hexadecimal digits after %");
+      if (high < 0 || low < 0) throw HttpError(400, "each % in the URL must precede two hexadecimal digits");
       decoded += static_cast<char>(high * 16 + low);
       i += 2;
     }
@@ -59,7 +59,7 @@ std::string decode(std::string_view text, bool plus_is_space) {
   return decoded;
 }
 
-// Calls `part` with each piece between separators.
+// Calls `part` with each piece of `text` between separators, also with empty ones.
 template <class Part>
 void split(std::string_view text, char separator, const Part& part) {
   for (;;) {
@@ -92,8 +92,8 @@ std::string_view take_authority(std::string_view& target) {
     target.remove_prefix(scheme.size());
     const std::string_view authority = target.substr(0, target.find_first_of("/?"));
     if (!is_authority(authority))
-      throw HttpError(400, "URL must have a host with an optional port (got " +
-                               std::string(authority.substr(0, 100)) + ")");
+      throw HttpError(
+          400, "URL authority must be HOST or HOST:PORT (got " + std::string(authority.substr(0, 100)) + ")");
     target.remove_prefix(authority.size());
     return authority;
   }

@@ -18,12 +18,13 @@ class ConnectionThreads {
 
   // Whether fewer than `most` connections are served and a thread is free, or can be started.
   bool has_room();
-  // Runs `work` on the next free thread. `work` must not throw. REQUIRES: a thread is free or will be soon.
+  // Runs `work` on the next free thread. `work` must not throw. REQUIRES: has_room() was true, or a
+  // connection has been evicted.
   void start(std::function<void()> work);
 
  private:
   void serve();
-  bool add_thread();  // requires mutex_; false if the system has no more
+  bool add_thread();  // requires mutex_; returns false if the system cannot start a thread
 
   const std::size_t max_;
   std::mutex mutex_;

@@ -19,7 +19,8 @@ class WaitState {
   // Starts with a wait for the client. `events`: poll() events.
   explicit WaitState(short events) : events_(events) {}
 
-  // Begins and ends a wait for the client. Both return false after an eviction.
+  // begin() starts a wait for the client since `since`. end() ends any wait. Both return false after an
+  // eviction.
   bool begin(Clock::time_point since, short events) {
     since_ = since.time_since_epoch().count();
     events_ = events;
@@ -32,7 +33,7 @@ class WaitState {
     return state != State::evicted;
   }
   bool was_evicted() const { return state_ == State::evicted; }
-  // Begins a wait for other threads.
+  // Starts a wait for other threads: Kind::turn or Kind::begun.
   void begin_turn(Kind kind) {
     since_ = Clock::now().time_since_epoch().count();
     change(State::working, kind == Kind::turn ? State::turn : State::begun);

@@ -9,10 +9,11 @@ namespace orrery {
 namespace {
 
 constexpr std::string_view kExpires = "expires", kSignature = "signature";
-// Option that needs the scope render: it can make a render a thousand times slower and changes no pixel.
+// Query parameter that needs the scope render. It can make a render a thousand times slower without changing
+// a pixel.
 constexpr std::string_view kChosen = "accelerator";
 
-// Returns the canonical text of the URL, independent of its escapes.
+// Returns a canonical text of the URL, without the link parameters and independent of percent-encoding.
 std::string address_of(const Request& request) {
   std::string text = request.path;
   for (const auto& [name, value] : request.query) {
@@ -29,7 +30,7 @@ bool pass_by_link(const Access& access, Request& request) {
   if (!signature) return false;
   const auto expires = parse_number<std::int64_t>(find_field(request.query, kExpires).value_or(""));
   if (!expires || !access.is_signed(address_of(request), *expires, *signature))
-    throw HttpError(403, "link has no valid signature of this service");
+    throw HttpError(403, "link signature is invalid");
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   if (std::chrono::duration_cast<std::chrono::seconds>(now).count() > *expires)
     throw HttpError(403, "link has expired");

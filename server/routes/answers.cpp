@@ -38,7 +38,7 @@ void require_json(const Request& request) {
   require_no_query(request);
   const std::string header = request.header("Content-Type").value_or("");
   const std::string_view type = trimmed(std::string_view(header).substr(0, header.find(';')));
-  // curl and HTML forms send x-www-form-urlencoded by default; such a body is read as JSON, too.
+  // curl and HTML forms send x-www-form-urlencoded by default; such a body is also read as JSON.
   constexpr std::array<std::string_view, 4> kTypes{"", "application/json",
                                                    "application/x-www-form-urlencoded", "text/plain"};
   const bool known =
@@ -51,7 +51,8 @@ void require_json(const Request& request) {
     throw HttpError(415, "charset of JSON must be utf-8 (got " + std::string(charset.substr(0, 40)) + ")");
 }
 
-// Match of an entry of an Accept header, such as "image/*;q=0.5", with a media type. `weight`: 0..1.
+// Match of a media type with an entry of an Accept header, such as "image/*;q=0.5". `weight`: q value, [0,
+// 1].
 struct Fit {
   int exactness = -1;  // 2: the type itself, 1: image/*, 0: */*, -1: no match
   double weight = 0;
@@ -76,7 +77,8 @@ Fit fit_of(std::string_view entry, std::string_view type) {
 Caller caller_of(const Request& request) { return {request.client, request.gone}; }
 
 RouteBody json_body(const App& app) {
-  return {.limit = {app.settings().body_bytes, "body_bytes"}, .require = require_json};
+  return {.limit = {app.settings().max_request_body_bytes, "max_request_body_bytes"},
+          .require = require_json};
 }
 
 void refuse_compressed(const Request& request) {

@@ -10,48 +10,50 @@
 #include "server/app/app.h"
 #include "server/routes/router.h"
 
-// Helpers of the routes that read requests and write responses.
+// Helpers of the routes for reading requests and writing responses.
 namespace orrery {
 
 Caller caller_of(const Request& request);
 
-// JSON body of at most `body_bytes`. Rejects other content types, compressed bodies and query parameters.
+// Returns the RouteBody for JSON of at most `max_request_body_bytes`. It rejects other content types,
+// compressed bodies and query parameters.
 RouteBody json_body(const App& app);
 // Throws HttpError 415 if the body is compressed.
 void refuse_compressed(const Request& request);
 
-// Returns the render options of the query. `more`: other query parameters that are allowed and not read here.
+// Returns the render options of the query. `more`: other query parameters, which are allowed but not read.
 // Throws InputError with pointers such as "/azimuth".
 RenderRequest read_query(const Request& request, std::span<const std::string_view> more = {});
 // Returns up to 40 bytes of a client's text in quotes, for error messages.
 std::string quoted(const std::string& text);
 
-// Whether If-None-Match lists `etag` (weak comparison) or "*".
+// Returns whether If-None-Match lists `etag` (weak comparison) or "*".
 bool has_current(const Request& request, std::string_view etag);
 
-// Returns the type of `offered` with the highest weight in the Accept header, the first of several. Throws
-// HttpError 406.
+// Returns the first type of `offered` with the highest weight in the Accept header. Throws HttpError 406 if
+// no type is acceptable.
 std::string_view negotiate(const Request& request, std::span<const std::string_view> offered);
 
-// Returns "load;dur=1.25, render;dur=40.1": the nonzero steps in ms.
+// Returns the nonzero steps in ms as a Server-Timing value: "load;dur=1.25, render;dur=40.1".
 std::string server_timing(const Timing& timing);
 
-// Sets Orrery-Warning if there are warnings.
+// Sets Orrery-Warning unless `warnings` is empty.
 void set_warnings(Response& response, std::span<const Problem> warnings);
 
 // Adds Orrery-NAME, and X-NAME for clients of version 0.1.
 void add_with_former_name(Fields& fields, const std::string& name, const std::string& value);
 
-// Adds the error bound of a picture, its RMSE if it was estimated from the samples, and its bias if it has
-// one.
+// Adds the headers of an image for its error bound, its RMSE if estimated from the samples, and its bias if
+// any.
 void add_accuracy(Fields& fields, const Picture& picture);
 
-// Returns a response with the picture and its cost: Server-Timing with the steps, the accelerator and its
-// counted work, and Orrery-Rays. Sets Orrery-RMSE if the error was estimated from the samples.
+// Returns a response with the image, Server-Timing, Orrery-Warning and the headers of add_accuracy(). If the
+// image was rendered for this request, Server-Timing includes the accelerator and its counted work, and
+// Orrery-Rays is set.
 Response picture_response(std::string_view type, const Rendered& rendered, const Timing& timing);
 
-// Sets the headers of a picture with a budget: Orrery-Budget with the outcome and, for PNG, Content-Location.
-// The latter is a URL below `prefix` that gives the same bytes without a budget.
+// Sets the headers of an image with a budget: Orrery-Budget with the outcome and, for PNG, Content-Location.
+// Content-Location is a URL below `prefix` that returns the same bytes without a budget.
 void set_budget(Response& response, std::string_view type, const Scene& scene, const Picture& picture,
                 const std::string& prefix);
 

@@ -4,7 +4,7 @@
 #include "server/routes/access.h"
 #include "server/routes/answers.h"
 
-// /v1/assets: mesh and picture files that scenes refer to by their SHA-256.
+// /v1/assets: mesh and image files, which scenes refer to by SHA-256.
 namespace orrery {
 namespace {
 
@@ -78,7 +78,7 @@ Response get_asset(App& app, Request& request) {
     response.set("Content-Type", names_of(*asset).media_type);
   }
   response.set("ETag", etag_of(id));
-  response.set("Cache-Control", "no-cache");  // the asset may be removed: revalidate each time
+  response.set("Cache-Control", "no-cache");  // the asset may be removed, so clients must revalidate
   return response;
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// Renders the pictures of a chart and discards them after measurement.
+// Renders the images of a chart and discards them after measuring their errors.
 class ChartWork final : public JobWork {
  public:
   ChartWork(const Scene& scene, const RenderRequest& view, const Study::Extent& extent)
@@ -35,7 +35,7 @@ class ChartWork final : public JobWork {
   JobResult result(const std::string& job_id, std::string_view path) const override {
     const ChartForm* form = chart_form_of(path);
     if (!form || path != folder() + job_id + std::string(form->ending))
-      throw NotFound("unknown file; the job has " + job_id + ".svg, .csv and .json");
+      throw NotFound("unknown file; the files of the job are " + job_id + ".svg, .csv and .json");
     return {"chart", form->type, std::nullopt,
             [this, form](const std::string& prefix) { return form->write(study_.chart(), prefix); }};
   }
@@ -66,7 +66,7 @@ ChartOrder read_chart_order(App& app, Request& request, Timing& timing) {
   return order;
 }
 
-// Returns all inputs of a chart, including options that change only the time, as text.
+// Returns a canonical text of all inputs of a chart, including options that change only the time.
 std::string canonical_chart(const Scene& scene, const ChartOrder& order) {
   return "chart " + scene.id + " " + canonical_work(scene, order.view) + " " +
          std::to_string(order.extent.samples) + " " + std::to_string(order.extent.rounds) + " " +

@@ -18,7 +18,7 @@ class Constant {
 
   Response answer(const Request& request) {
     std::call_once(made_, [this] {
-      const TaskScope nobody({});  // charged to no client, since any request may be the first
+      const TaskScope nobody({});  // memory is charged to no client, since any client may be the first
       bytes_ = make_();
       gzip_ = gzip_of(type_, bytes_);
       etag_ = "\"" + sha256_hex(bytes_).substr(0, 32) + "\"";

@@ -8,8 +8,8 @@
 #include "server/app/app.h"
 #include "server/routes/answers.h"
 
-// GET /v1/scenes/{id}/explain: what a frame.png with the same query would model, what it would
-// leave out and why. With measure=true also its estimated cost.
+// GET /v1/scenes/{id}/explain: explains what a frame.png with the same query would model and leave out. With
+// measure=true, also predicts its cost and error.
 namespace orrery {
 namespace {
 
@@ -31,7 +31,7 @@ Response explain(App& app, Request& request) {
   if (!measured) return json_answer(200, explain_json(scene->scene(), *plan));
   Response response =
       json_answer(200, explain_json(scene->scene(), *plan, app.forecast(*scene, plan, caller_of(request))));
-  response.set("Cache-Control", "no-store");  // measured times are current
+  response.set("Cache-Control", "no-store");  // measured times vary
   return response;
 }
 

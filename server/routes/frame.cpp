@@ -3,7 +3,7 @@
 #include "server/app/picture_key.h"
 #include "server/routes/answers.h"
 
-// GET /v1/scenes/{id}/frame.png: one picture, a pure function of its URL unless that has a time budget.
+// GET /v1/scenes/{id}/frame.png: one image, a pure function of its URL unless the URL sets a time budget.
 namespace orrery {
 namespace {
 
@@ -20,7 +20,8 @@ Response frame(App& app, Request& request) {
   Response response;
   const std::string etag = etag_of(scene->scene(), wanted);
   bool lasts = wanted.seconds.value_or(0) == 0;
-  // A picture that missed its budget has no ETag. An ETag of the client proves a met budget; "*" does not.
+  // An image that missed its budget has no ETag. An ETag from the client therefore proves a met budget, but
+  // "*" does not.
   const bool named = !has_budget(wanted) || request.header("If-None-Match") != "*";
   if (lasts && named && has_current(request, etag)) {
     response.status = 304;
@@ -32,7 +33,7 @@ Response frame(App& app, Request& request) {
                                          caller_of(request), timing);
     response = picture_response("image/png", rendered, timing);
     set_budget(response, "image/png", scene->scene(), *rendered.picture, request.prefix);
-    // Another instance may be able to spend more rays.
+    // Another instance may have a higher limit on rays and meet the budget.
     lasts = lasts && !is_missed(rendered.picture->budget);
   }
   if (!lasts) return response.set("Cache-Control", "no-store");

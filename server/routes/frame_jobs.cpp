@@ -7,13 +7,13 @@
 #include "server/routes/job_answers.h"
 #include "server/routes/render_order.h"
 
-// POST /v1/jobs: renders pictures and orbits that take too long for one HTTP request.
+// POST /v1/jobs: renders images and orbits that take too long for one HTTP request.
 namespace orrery {
 namespace {
 
 using nlohmann::ordered_json;
 
-// Renders one picture or the frames of an orbit to PNG files.
+// Renders one image or the frames of an orbit to PNG files.
 class FrameWork final : public JobWork {
  public:
   FrameWork(const std::shared_ptr<const PreparedScene>& scene, const OrbitPath& path, int frames)
@@ -55,7 +55,8 @@ class FrameWork final : public JobWork {
             "frame " + std::to_string(*number), "image/png", *number + 1,
             [this, step = *number](const std::string&) { return files_[static_cast<std::size_t>(step)]; }};
     }
-    throw NotFound("unknown file; the job has " + begin + "0.png to " + std::to_string(steps() - 1) + ".png");
+    throw NotFound("unknown file; the files of the job are " + begin + "0.png to " +
+                   std::to_string(steps() - 1) + ".png");
   }
 
  private:

@@ -40,8 +40,8 @@ Response start_job(App& app, Request& request, JobSpec spec, const std::string& 
   const std::string key = request.header("Idempotency-Key").value_or("");
   constexpr std::size_t kLongestKey = 255;
   if (key.size() > kLongestKey)
-    throw HttpError(400, "Idempotency-Key has " + grouped(key.size()) + " characters (limit " +
-                             grouped(kLongestKey) + ")");
+    throw HttpError(400, "Idempotency-Key must have at most " + grouped(kLongestKey) + " characters (got " +
+                             grouped(key.size()) + ")");
   const Jobs::StartResult started = app.jobs().start(std::move(spec), key, content);
   Response response = json_answer(202, job_json(*started.job, started.job->status(), request.prefix));
   response.set("Location", job_path(started.job->id()));

@@ -23,18 +23,19 @@ std::string event(std::string_view name, int id, const ordered_json& data) {
   return "event: " + std::string(name) + "\nid: " + std::to_string(id) + "\ndata: " + data.dump() + "\n\n";
 }
 
-// Server-sent events of a job. The ID of an event is the number of steps done when it is sent, plus one for
-// the last event. A client that reconnects with Last-Event-ID misses no event.
+// Server-sent events of a job. The ID of an event is the number of finished steps reported up to and
+// including it. The ID of the last event is one more than the number of all steps. A client that reconnects
+// with Last-Event-ID misses no finished step.
 struct Events {
   std::shared_ptr<Job> job;
   std::string prefix;       // prefix of links
-  int seen;                 // steps that were reported to the client
-  std::int64_t tiles = -1;  // tiles that were reported to the client
+  int seen;                 // finished steps reported to the client
+  std::int64_t tiles = -1;  // finished tiles reported to the client
   bool ended = false;
 
   void send(Sink& sink, const Timer& timer, const std::stop_token& gone) {
-    constexpr std::chrono::milliseconds kLeast{100};  // between two progress events
-    constexpr std::chrono::seconds kSilence{10};      // until a comment keeps the connection alive
+    constexpr std::chrono::milliseconds kLeast{100};  // minimum time between two progress events
+    constexpr std::chrono::seconds kSilence{10};      // maximum time without an event or a keep-alive comment
     for (JobStatus status = job->status(); tell(sink, status) && !ended && !gone.stop_requested();) {
       const HandlerSlots::Wait wait(WaitState::Kind::begun);
       const auto spoke = timer.now();
@@ -45,7 +46,8 @@ struct Events {
   }
 
  private:
-  // Sends the events that the client has not seen. Returns false if the client has disconnected.
+  // Sends the events that the client has not received, or a comment if there are none. Returns false if the
+  // client has disconnected.
   bool tell(Sink& sink, const JobStatus& status) {
     const bool moved = std::exchange(tiles, status.tiles_done) != status.tiles_done,
                late = seen < status.steps_done;
@@ -73,9 +75,10 @@ Response get_events(App& app, Request& request) {
   if (const auto last = request.header("Last-Event-ID")) {
     seen = parse_number<int>(*last).value_or(-1);
     if (seen < 0)
-      throw HttpError(400, "Last-Event-ID must be the number of an event (got " + last->substr(0, 40) + ")");
+      throw HttpError(400, "Last-Event-ID must be the ID of an event, an integer of at least 0 (got " +
+                               last->substr(0, 40) + ")");
   }
-  if (seen > job->status().steps) return {.status = 204};  // ends the client's reconnects
+  if (seen > job->status().steps) return {.status = 204};  // stops an EventSource from reconnecting
   Response response;
   response.set("Content-Type", "text/event-stream");
   response.set("Cache-Control", "no-store").set("X-Accel-Buffering", "no");

@@ -13,7 +13,7 @@
 namespace orrery {
 namespace {
 
-// Returns the JSON Schema of each render option without description: {"minimum": 1, "maximum": 32}.
+// Returns the JSON Schema of each render option, such as {"minimum": 1, "maximum": 32}, without description.
 nlohmann::ordered_json option_limits() {
   nlohmann::ordered_json limits = option_schemas();
   for (auto& schema : limits) schema.erase("description");
@@ -42,7 +42,7 @@ nlohmann::ordered_json limits_json(const Settings& settings, const nlohmann::ord
                                  {"picture_texels", PictureLimits{}.texels}};
   for (const Setting& limit : limits()) json[std::string(limit.name)] = std::stoll(limit.text(settings));
   json["work_bytes"] = work_bytes(settings);
-  json["storage"] = "memory";  // scenes, assets, pictures and jobs end with the service
+  json["storage"] = "memory";  // scenes, assets, images and jobs are lost when the service stops
   json["options"] = options;
   return json;
 }

@@ -8,10 +8,10 @@
 #include "server/routes/answers.h"
 #include "server/routes/constant.h"
 
-// GET /openapi.json: the OpenAPI description of the service. The file openapi.json has everything except the
-// render options:
-//   "render options" in a list of parameters  is replaced by those of a query;
-//   components.schemas                        lacks camera, image and render, the parts of a request body;
+// GET /openapi.json: the OpenAPI description of the service. The file openapi.json contains everything except
+// the parts that follow from render options and settings:
+//   "render options" in a list of parameters  is replaced by the query parameters of all render options;
+//   components.schemas                        lacks the sections of a request body, such as camera;
 //   components.schemas.Explanation            lacks the options of the section render;
 //   components.schemas.Limits                 lacks the limits that are settings.
 namespace orrery {
@@ -28,11 +28,11 @@ ordered_json file_part() {
   return ordered_json::parse(file->bytes);
 }
 
-// Returns the query parameter `name` of an option; lists are separated by commas.
+// Returns the query parameter `name` of an option. The values of a list are separated by commas.
 ordered_json parameter_of(std::string_view name, const RenderOption& option, ordered_json schema) {
   std::string description = schema["description"];
   schema.erase("description");
-  if (name != option.key) description = "The same as " + std::string(option.key) + ".";
+  if (name != option.key) description = "Short name of " + std::string(option.key) + ".";
   ordered_json parameter = {{"name", name}, {"in", "query"}, {"description", std::move(description)}};
   const auto form = option.form();
   if (form == RenderOption::Form::numbers || form == RenderOption::Form::strings)
@@ -59,7 +59,8 @@ void add_limits(ordered_json& schema) {
   }
 }
 
-// Replaces the placeholder in all lists of parameters. Returns the parameters that replace it, by name.
+// Replaces the placeholder in all lists of parameters with references to components. Returns these components
+// by name.
 ordered_json expand_parameters(ordered_json& paths, const ordered_json& options) {
   ordered_json components = ordered_json::object(), references = ordered_json::array();
   for (const std::string_view name : render_option_names()) {

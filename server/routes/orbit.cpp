@@ -12,14 +12,14 @@
 #include "server/routes/answers.h"
 #include "server/routes/picture_stream.h"
 
-// GET /v1/scenes/{id}/orbit: streams the frames of an orbit of the camera as they are rendered.
+// GET /v1/scenes/{id}/orbit: streams the frames of a camera orbit as they are rendered.
 namespace orrery {
 namespace {
 
 constexpr std::array<std::string_view, 4> kOwnParameters{"frames", "step", "time_step", "fps"};
 
-// Returns the value of a query parameter, or `fallback` if it is missing. Appends an invalid value to
-// `problems`.
+// Returns the value of a query parameter, or `fallback` if it is missing or invalid. Appends a problem if it
+// is invalid.
 double number_of(const Request& request, std::string_view name, double min, double max, double fallback,
                  std::vector<Problem>& problems) {
   for (const auto& [key, text] : request.query) {
@@ -99,7 +99,7 @@ void send(const OrbitRequest& orbit, PictureWriter&& writer) {
                         .fields = {{"Orrery-Error-Bound", bound_text(frame->picture.certificate)}},
                         .last = orbit.viewer->at_end()});
       if (!written) return;
-    } catch (const LimitExceeded&) {  // skips the frame, as for a slow viewer
+    } catch (const LimitExceeded&) {  // skips the frame, like a slow viewer
     }
   writer.end();
 }

@@ -7,14 +7,13 @@
 
 #include "server/http/message.h"
 
-// Streams of PNG pictures, either multipart/x-mixed-replace, which browsers can show, or
-// application/x-orrery-frames: [length of the header, 4 bytes, big-endian][header, JSON][PNG] for each
-// picture.
+// Streams of PNG images in one of two formats. Browsers can show multipart/x-mixed-replace.
+// application/x-orrery-frames is a sequence of [header length: 4 bytes, big-endian][header: JSON][PNG].
 namespace orrery {
 
 enum class StreamFormat { multipart, frames };
 
-// Returns the preferred format of the Accept header. Throws HttpError 406.
+// Returns the format that the Accept header prefers. Throws HttpError 406 if it allows neither.
 StreamFormat negotiate_stream(const Request& request);
 // Sets Content-Type and the headers that keep proxies from caching and buffering.
 void set_stream_headers(Response& response, StreamFormat format);
@@ -30,10 +29,10 @@ class PictureWriter {
  public:
   PictureWriter(Sink& sink, StreamFormat format) : sink_(sink), format_(format) {}
 
-  // Writes a picture and waits until it is sent. Returns false if the client has disconnected. Throws
-  // LimitExceeded without sending it if too many response bytes are being sent.
+  // Writes an image and waits until it is sent. Returns false if the client has disconnected. Throws
+  // LimitExceeded, without sending the image, if too many response bytes are being sent.
   bool write(const StreamedPicture& picture);
-  // Ends the stream after the last picture.
+  // Ends the stream after the last image.
   void end();
 
  private:
@@ -43,7 +42,7 @@ class PictureWriter {
 
   Sink& sink_;
   const StreamFormat format_;
-  bool begun_ = false, ended_ = false;  // multipart body
+  bool begun_ = false, ended_ = false;  // state of the multipart body
 };
 
 }  // namespace orrery

@@ -15,9 +15,10 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr std::size_t kMaxBytes = 64 * 1024;   // response body
-constexpr std::size_t kMostCharacters = 4500;  // detail; at most 6 bytes each
+constexpr std::size_t kMostCharacters = 4500;  // detail; each has at most 6 bytes in JSON
 
-// Returns the body, without its last errors if all of them would exceed kMaxBytes. REQUIRES: one error fits.
+// Returns the response body. Leaves out its last errors if it would exceed kMaxBytes. REQUIRES: one error
+// fits.
 std::string text_of(ordered_json problem) {
   const auto text = [&] {
     return problem.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
@@ -54,7 +55,7 @@ ordered_json list_of(const std::vector<Problem>& problems) {
 
 Response try_later(int status, const Busy& error, std::string_view request_id, const char* refusal) {
   Response response = respond(status, error.what(), request_id);
-  // Spreads Retry-After, so that clients rejected together do not all return together.
+  // Spreads Retry-After, so that clients that were rejected together do not all retry together.
   const auto seconds = static_cast<std::size_t>(std::ceil(error.retry_after_s()));
   const std::size_t spread = std::hash<std::string_view>()(request_id) % (1 + seconds / 4);
   response.set("Retry-After", std::to_string(seconds + spread));
@@ -71,7 +72,7 @@ Response malformed(const MalformedJson& error, std::string_view request_id) {
                  "urn:orrery:problem:malformed-json", more);
 }
 
-// Returns a 422 with the outcome that was possible: the budget and its certificate.
+// Returns a 422 with the outcome of the budget and the certificate.
 Response missed(const BudgetMissed& error, std::string_view request_id) {
   const BudgetOutcome& outcome = error.outcome();
   ordered_json more =

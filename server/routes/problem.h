@@ -7,7 +7,7 @@
 
 namespace orrery {
 
-// Returns the response to any exception: problem details (RFC 9457) with the request's ID. Unexpected
+// Returns the response for any exception: problem details (RFC 9457) with the request ID. Unexpected
 // exceptions become a 500 without details; their text is in Response::note.
 Response problem_response(std::exception_ptr error, std::string_view request_id);
 

@@ -7,8 +7,8 @@
 #include "server/routes/answers.h"
 #include "server/routes/picture_stream.h"
 
-// GET /v1/scenes/{id}/refinement: one picture in passes, from few samples to all requested ones. Each pass
-// equals the frame.png with its number of samples.
+// GET /v1/scenes/{id}/refinement: streams one image in passes with increasing samples. The image of each pass
+// equals frame.png with the same number of samples.
 namespace orrery {
 namespace {
 
@@ -30,7 +30,7 @@ Fields fields_of(const Refinement::Step& step) {
   return fields;
 }
 
-// State of a refinement stream whose first picture is rendered.
+// State of a refinement stream whose first image is rendered.
 struct RefinementRequest {
   std::shared_ptr<const void> place;
   std::shared_ptr<Refinement> refinement;
@@ -38,8 +38,8 @@ struct RefinementRequest {
   std::stop_token gone;
 };
 
-// Writes a picture. Skips a picture that exceeds the quota of response bytes, unless it is the last. Returns
-// false if the client has disconnected.
+// Writes an image. Skips an image that exceeds the quota of response bytes, but throws LimitExceeded for the
+// last one. Returns false if the client has disconnected.
 bool write(PictureWriter& writer, const Refinement& refinement, const Refinement::Step& step) {
   const auto header = header_of(step, refinement.plan());
   try {

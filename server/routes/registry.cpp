@@ -2,7 +2,7 @@
 
 namespace orrery {
 
-// A line for each file of routes; the paths are in the file.
+// One line for each file of routes. The paths are in these files.
 // clang-format off
 #define ORRERY_ROUTES(add) \
   add(render)              \

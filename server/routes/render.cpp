@@ -5,7 +5,7 @@
 #include "server/routes/answers.h"
 #include "server/routes/render_order.h"
 
-// POST /v1/render: renders a scene, or a request {scene or scene_id, camera, image, render}.
+// POST /v1/render: renders a scene, or a request {scene or scene_id, camera, image, render, budget}.
 namespace orrery {
 namespace {
 

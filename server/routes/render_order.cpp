@@ -9,7 +9,7 @@ namespace {
 SceneStore::Prepared find(App& app, const Document& id) {
   const std::string text = id.canonical();  // in quotes if it is a string
   if (!text.starts_with('"'))
-    throw InputError("/scene_id", "must be the id of a scene in quotes (got " + text.substr(0, 40) + ")");
+    throw InputError("/scene_id", "must be a string, the id of a scene (got " + text.substr(0, 40) + ")");
   return app.scenes().find(text.substr(1, text.size() - 2));
 }
 

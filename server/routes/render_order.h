@@ -15,8 +15,8 @@ struct RenderOrder {
   RenderRequest request;
 };
 
-// Reads either {scene or scene_id, camera, image, render} or a bare scene. `more` may read further keys of
-// the former. Consumes the request's body. Throws the errors of App::read and read_request.
+// Reads either {scene or scene_id, camera, image, render, budget} or a bare scene. In the first case, `more`
+// may read further keys. Consumes the request's body. Throws the errors of App::read() and read_request().
 RenderOrder read_render_order(App& app, Request& request, Timing& timing,
                               const std::function<void(Params&)>& more = {});
 

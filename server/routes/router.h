@@ -13,21 +13,21 @@
 
 namespace orrery {
 
-// Body that is read before the route's handler is called.
+// Rules for a body, which is read before the handler of the route is called.
 struct RouteBody {
   BodyLimit limit;
-  void (*require)(const Request&);  // throws to reject the body by the request's head
+  void (*require)(const Request&);  // called before the body is read; throws to reject it
 };
 
-// Endpoint of the service. `handler` runs on connection threads, for several requests at once, so it must be
-// thread-safe. Its exceptions become the response of problem_response().
+// Endpoint of the service. `handler` runs on connection threads for several requests at once, so it must be
+// thread-safe. problem_response() turns its exceptions into responses.
 struct Route {
   using Handler = std::function<Response(Request&)>;
 
   std::string method, pattern;
   std::vector<std::string> segments;  // segments of the pattern
-  Scope scope;                        // required of the token
-  LogLevel log;                       // level of successful requests
+  Scope scope;                        // scope that the token must have
+  LogLevel log;                       // log level of successful requests
   std::optional<RouteBody> body;      // nullopt: no body is read
   Handler handler;
 };
@@ -35,8 +35,8 @@ struct Route {
 // Finds the route for a method and a path. Thread-safe once all routes are added.
 class Router {
  public:
-  // Adds a route. In `pattern`, {name} stands for any one segment: "/v1/scenes/{id}/frame.png". A GET route
-  // also answers HEAD. Routes are tried in order of addition.
+  // Adds a route. In `pattern`, {name} matches one non-empty segment: "/v1/scenes/{id}/frame.png". A GET
+  // route also answers HEAD. Routes are tried in order of addition.
   void add(std::string_view method, std::string_view pattern, Scope scope, LogLevel log,
            Route::Handler handler);
   void add(std::string_view method, std::string_view pattern, Scope scope, LogLevel log,
@@ -49,14 +49,14 @@ class Router {
   // Returns all routes in order of addition.
   const std::deque<Route>& routes() const { return routes_; }
 
-  // Returns the methods of the request's path, such as "GET, HEAD, OPTIONS"; for "*" those of all routes (RFC
-  // 9110, 9.3.7). Sets the same members as find(). Throws HttpError 404.
+  // Returns the methods of the request's path, such as "GET, HEAD, OPTIONS". For "*", returns those of all
+  // routes (RFC 9110, 9.3.7). Sets the same members as find(). Throws HttpError 404 for an unknown path.
   std::string allowed_methods(Request& request) const;
 
  private:
   static bool matches(const Route& route, Request& request);
-  // Returns the routes whose last segment is a placeholder below the path, such as "PUT /v1/assets/{sha256},
-  // GET ...". Returns "" if there are none.
+  // Returns the routes that extend the path by one placeholder, such as "PUT /v1/assets/{sha256}, GET ...".
+  // Returns "" if there are no such routes.
   std::string named_below(const Request& request) const;
 
   std::deque<Route> routes_;  // a deque, since requests point to its elements

@@ -5,10 +5,10 @@
 
 namespace orrery {
 
-// Adds all endpoints of registry.cpp. The app must outlive the router.
+// Adds the endpoints of all files in registry.cpp. The app must outlive the router.
 void add_routes(Router& router, App& app);
 
-// Adds the health endpoints only, for the health port.
+// Adds only the health endpoints, for the health port.
 void add_health_routes(Router& router, App& app);
 
 }  // namespace orrery

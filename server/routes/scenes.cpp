@@ -61,7 +61,7 @@ Response get_scene(App& app, Request& request) {
   if (!has_current(request, etag))
     response = text_response(200, "application/json", {prepared, scene.canonical});
   response.set("ETag", etag);
-  response.set("Cache-Control", "no-cache");  // the scene may be removed: revalidate each time
+  response.set("Cache-Control", "no-cache");  // the scene may be removed, so clients must revalidate
   return response;
 }
 

@@ -7,13 +7,13 @@
 #include "server/routes/access.h"
 #include "server/routes/answers.h"
 
-// POST /v1/shares: signs a URL that needs no token until it expires.
+// POST /v1/shares: signs a URL, which then needs no token until it expires.
 namespace orrery {
 namespace {
 
 Response share(App& app, const Router& router, Request& request) {
   constexpr std::int64_t kLongest_s = 366 * 86400, kUsual_s = 7 * 86400;
-  constexpr std::size_t kLongestPath = 1900;  // leaves room for the link's parameters in a target
+  constexpr std::size_t kLongestPath = 1900;  // leaves space for the link parameters in a request target
   std::string path;
   std::int64_t seconds = kUsual_s;
   Timing timing;
@@ -30,7 +30,7 @@ Response share(App& app, const Router& router, Request& request) {
   const bool plain =
       std::all_of(path.begin(), path.end(), [](char c) { return c > ' ' && c < 0x7F && c != '#'; });
   if (!plain)
-    throw InputError("/path", "must not contain blanks, # and characters outside ASCII; escape them with %");
+    throw InputError("/path", "must not contain blanks, # or non-ASCII characters; percent-encode them");
   Request target;
   target.method = "GET";
   try {
@@ -39,8 +39,9 @@ Response share(App& app, const Router& router, Request& request) {
     target.segments = std::move(parsed.segments);
     target.query = std::move(parsed.query);
     if (router.find(target).scope != Scope::read)
-      throw HttpError(422, "must be a path that a link may open (got " + orrery::quoted(path) + ")");
-    if (is_link(target)) throw HttpError(422, "must not be a signed link already");
+      throw HttpError(422,
+                      "must be the path of an endpoint with scope read (got " + orrery::quoted(path) + ")");
+    if (is_link(target)) throw HttpError(422, "must not be a signed link");
   } catch (const HttpError& error) {
     throw InputError("/path", error.what());
   }

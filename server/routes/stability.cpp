@@ -5,8 +5,8 @@
 #include "server/routes/answers.h"
 #include "server/routes/constant.h"
 
-// GET /v1/stability: known failures of numerical methods, and the errors of this build's methods. Measured
-// for the first request, which takes a third of a second on one thread.
+// GET /v1/stability: errors of known numerical methods and of the methods of this build. The first request
+// measures them, which takes a third of a second on one thread.
 namespace orrery {
 
 void add_stability_routes(Router& router, App&) {

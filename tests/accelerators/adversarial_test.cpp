@@ -11,8 +11,8 @@
 namespace orrery::test {
 namespace {
 
-// Returns groups of 16 coherent rays, like those of neighbouring pixels or of one light. A group shares
-// either its origin or its target, chosen at random.
+// Returns groups of 16 coherent rays, such as camera rays of neighbouring pixels or shadow rays to one light.
+// A group shares either its origin or its target, chosen at random.
 template <class T>
 Rays<T> alike_rays(const Vec3d& middle, double half, int count, double spread, std::uint64_t seed) {
   Random random(seed);
@@ -60,7 +60,7 @@ class AdversarialScenes : public StructureTest {
   AcceleratorFacts agree(const Json& scene, const Rays<T>& rays) {
     return StructureTest::agree<T>(scene, rays, {T(0.7), std::numeric_limits<T>::infinity()});
   }
-  // Compares `count` rays of each kind in a cube of half width `half`.
+  // Compares with the list for `count` rays of each kind in a cube of half width `half`.
   AcceleratorFacts agree(const Json& scene, const Vec3d& middle, double half, int count) {
     const auto facts = agree<float>(scene, any_rays<float>(middle, half, count, 1));
     agree<double>(scene, any_rays<double>(middle, half, count, 1));
@@ -76,7 +76,7 @@ Json sphere(const Vec3d& center, double radius) {
   return {{"type", "sphere"}, {"center", {center.x, center.y, center.z}}, {"radius", radius}};
 }
 
-// Returns a mesh of 2 * side * side triangles over [-1, 1]^2; `height` gives z.
+// Returns a mesh of 2 * side * side triangles over [-1, 1]^2; z = height(x, y).
 template <class Height>
 Json sheet(int side, const Height& height) {
   Json positions = Json::array(), indices = Json::array();
@@ -140,7 +140,7 @@ TEST_P(AdversarialScenes, MatchesListOnHalvingSpheres) {
   for (const double half : {1e6, 1.0, 1e-6}) agree(scene_with(objects), {}, half, 10'000);
 }
 
-// Growing gaps leave bottom-up grouping a single nearest pair at a time.
+// With growing gaps, bottom-up grouping merges only one nearest pair per step.
 TEST_P(AdversarialScenes, BoundsDepthOnGrowingGaps) {
   covers("F3");
   Json objects = Json::array();

@@ -3,8 +3,8 @@
 #include "tests/support/random.h"
 #include "tests/support/shapes.h"
 
-// Compares every registered structure with testing every primitive: the same primitive at the same distance,
-// bit for bit, and the same shadows.
+// Compares every registered structure with the list, which tests every primitive. Nearest primitives,
+// distances (bit for bit) and shadows must be equal.
 namespace orrery::test {
 namespace {
 
@@ -52,8 +52,9 @@ Rays<T> rays_through(double half, double from, int count, std::uint64_t seed) {
   return rays;
 }
 
-// Returns distant rays that touch the shape to within a few ulp of the distance, where rounding decides.
-// Every fourth ray goes through the touched point, since flat shapes are hit by no others.
+// Returns rays that start `distance` away and pass within 8 ulp of `distance` of the surface, where rounding
+// decides. Most rays are tangential. Every fourth has a random direction, because tangential rays miss flat
+// shapes.
 template <class T>
 Rays<T> touching_rays(const Json& object, double distance, int count) {
   const Target<double> shape(scene_with(object));
@@ -100,8 +101,8 @@ TEST_P(Accelerators, MatchesListOnCoincidentSurfaces) {
   }
 }
 
-// At distant silhouettes the kernels decide within a few ulp of the distance. A box test must not reject a
-// ray that the kernel accepts.
+// For a ray that grazes a distant silhouette, the kernel's result depends on rounding. A box test must not
+// reject a ray that the kernel accepts.
 TEST_P(Accelerators, MatchesListOnDistantRays) {
   covers("F1");
   for (const std::string& type : shape_names())
@@ -125,7 +126,7 @@ TEST_P(Accelerators, MatchesListOnGrazingRays) {
     }
 }
 
-// Rays exactly along an axis may cost at most three times as much as jittered rays.
+// Rays exactly along an axis may cost at most three times as many tests and node visits as jittered rays.
 TEST_P(Accelerators, BoundsCostOfAxisAlignedRays) {
   covers("A29");
   const auto work = [&](double jitter) {

@@ -21,8 +21,8 @@ Cells visited(const GridLayout<T>& layout, const Ray<T>& ray) {
   return cells;
 }
 
-// Returns the cells whose closed boxes, grown by `pad` on each side, the ray touches, computed in long
-// double.
+// Returns the cells that the ray touches, where each closed cell is enlarged by `pad` on all sides. Computed
+// in long double.
 template <class T>
 Cells touched(const GridLayout<T>& layout, const Ray<T>& ray, long double pad) {
   Cells cells;
@@ -48,7 +48,8 @@ Cells touched(const GridLayout<T>& layout, const Ray<T>& ray, long double pad) {
   return cells;
 }
 
-// Expects a visit to each cell that the ray touches, and to none that it misses by more than rounding.
+// Expects the traversal to visit every cell that the ray touches. It may visit other cells only within
+// rounding error of the ray.
 template <class T>
 void expect_visits(const GridLayout<T>& layout, const Ray<T>& ray) {
   const Cells found = visited(layout, ray);
@@ -86,14 +87,15 @@ TYPED_TEST(GridLayouts, VisitsBothSidesOfPlaneContainingRay) {
         expect_visits<T>(layout, {{x, y, T(-3)}, {zero, zero, T(1)}});
         expect_visits<T>(layout, {{x, y, T(11)}, {zero, zero, T(-1)}});
         expect_visits<T>(layout, {{x, T(-3), y}, {zero, T(1), zero}});
-        expect_visits<T>(layout, {{x, y, T(-3)}, {T(0.6), zero, T(0.8)}});  // in a plane, across others
+        // In a plane between cells, crossing other planes.
+        expect_visits<T>(layout, {{x, y, T(-3)}, {T(0.6), zero, T(0.8)}});
       }
     }
-  for (const T way : {T(1), T(-1)}) {  // through corner after corner
+  for (const T way : {T(1), T(-1)}) {  // through the corners of cells
     const T d = way / std::sqrt(T(3));
     expect_visits<T>(layout, {{T(4) - 10 * d, T(4) - 10 * d, T(4) - 10 * d}, {d, d, d}});
   }
-  expect_visits<T>(layout, {{T(9), T(4), T(-3)}, {T(0), T(0), T(1)}});  // outside of the grid
+  expect_visits<T>(layout, {{T(9), T(4), T(-3)}, {T(0), T(0), T(1)}});  // misses the grid
 }
 
 TYPED_TEST(GridLayouts, VisitsKnownPaths) {
@@ -102,7 +104,7 @@ TYPED_TEST(GridLayouts, VisitsKnownPaths) {
   const GridLayout<T> unit({Vec3<T>(T(0)), Vec3<T>(T(1))}, 1000);
   const T x = T(0.49);
   EXPECT_EQ(visited<T>(unit, {{x, x, T(-1)}, {T(0), T(0), T(2)}}).size(), 10u);
-  const GridLayout<T> wide({{T(0), T(-16), T(0)}, {T(96), T(0), T(48)}}, 18);  // cells of 16
+  const GridLayout<T> wide({{T(0), T(-16), T(0)}, {T(96), T(0), T(48)}}, 18);  // cells of width 16
   ASSERT_EQ(wide.cells(), 18u);
   expect_visits<T>(wide, {{T(0), T(0), T(0)}, Vec3<T>(safe_normalize(Vec3d(90, -16, 45)))});
 }

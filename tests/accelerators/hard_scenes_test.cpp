@@ -9,7 +9,7 @@
 #include "tests/support/random.h"
 #include "tests/support/structures.h"
 
-// Tests scenes in which a structure or a shape once lost hits.
+// Compares structures with the list in scenes of extreme proportions, where rounding errors can lose hits.
 namespace orrery::test {
 namespace {
 
@@ -27,7 +27,8 @@ TEST_P(HardScenes, RendersIdenticallyToList) {
   for (const std::string& path : hard_scenes()) {
     std::ifstream file(path);
     const auto scene = load(Json::parse(file));
-    const bool underflows = scene->facts.smallest_feature.value < 1e-10;  // float has no valid reference
+    // In float, the list is no valid reference.
+    const bool underflows = scene->facts.smallest_feature.value < 1e-10;
     for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
       if (underflows && precision == Precision::single_precision) continue;
       const auto by = [&](const std::string& accelerator) {
@@ -47,7 +48,7 @@ INSTANTIATE_TEST_SUITE_P(Structures, HardScenes, testing::ValuesIn(accelerator_n
                            return name;
                          });
 
-// Returns slivers around one point, magnified by a telescope.
+// Returns triangles of the given aspect ratio near the origin, seen with a field of view of a few widths.
 Json slivers(double aspect, Random& random) {
   constexpr int kCount = 60;
   const double width = 2 / aspect;
@@ -102,7 +103,7 @@ INSTANTIATE_TEST_SUITE_P(Structures, Slivers, testing::ValuesIn(accelerator_name
   return name;
 });
 
-// The tilts of these disks and cylinders are below the square root of the rounding error.
+// The squares of these tilts are below the rounding error of 1 (1.1e-16).
 TEST(ShapeBounds, CoversSlightlyTiltedDisksAndCylinders) {
   for (const double tilt : {1e-8, 1e-12, 1e-100}) {
     const auto bounds = [](const Json& object) {

@@ -53,7 +53,7 @@ const std::vector<Place> kPlaces{{{1, 1, 1}, {0, 1, 0}, {0, 0, 0}, 0},
                                  {{0.01, 0.02, 0.01}, {0, 0, 1}, {1.5, 0, 0}, 33},
                                  {{2, 2, 0.004}, {1, 1, 0}, {0, -4, 0}, 30}};
 
-// Object far from all others, as a scene needs at least one.
+// A scene needs at least one object. This one is far from the instances.
 const Json kSpeck = {{"type", "sphere"}, {"center", {0, -500, 0}}, {"radius", 0.001}};
 
 Json scene_of_places(const Json& model, const Json& objects = kSpeck) {
@@ -79,7 +79,7 @@ template <class T>
 Rays<T> rays_around(int count, std::uint64_t seed) {
   Random random(seed);
   Rays<T> rays;
-  while (static_cast<int>(rays.size()) < count) {  // some coherent, some not
+  while (static_cast<int>(rays.size()) < count) {  // half of the groups are coherent
     const Vec3d from = random.in_cube(7), to = random.in_cube(3);
     for (int i = 0; i < (random.below(2) ? 16 : 1); ++i)
       rays.push_back({Vec3<T>(from), Vec3<T>(safe_normalize(to + random.in_cube(0.05) - from))});
@@ -183,8 +183,8 @@ Vec3d world_normal(const Json& model, std::size_t triangle, const Place& place) 
   return dot(normal, corner[0] - place.move) < 0 ? -normal : normal;
 }
 
-// Checks exterior hits on every instance. The normal is that of the surface, and a ray leaving along it does
-// not hit the same instance.
+// Expects the normal of the surface at exterior hits of every instance. A ray that leaves along this normal
+// must not hit the same instance.
 template <class T>
 void expect_outward_and_clear() {
   const Json model = ball_mesh(24, 48), json = scene_of_places(model);
@@ -215,8 +215,8 @@ void expect_outward_and_clear() {
         const Vec3<T> normal = surface->geometric[i], position = surface->position[i];
         const double least = std::min({std::abs(kPlaces[which].scale.x), std::abs(kPlaces[which].scale.y),
                                        std::abs(kPlaces[which].scale.z)});
-        EXPECT_LT(static_cast<double>(surface->step[i]), 0.02 * least) << "the step may not cross the body";
-        if (surface->side[i] < 0) continue;  // from inside
+        EXPECT_LT(static_cast<double>(surface->step[i]), 0.02 * least) << "offset crosses the instance";
+        if (surface->side[i] < 0) continue;  // hit from inside
         ++met;
         const auto triangle = static_cast<std::size_t>((hits->primitive[i] - 1) % per);
         wrong += length(Vec3d(normal) - world_normal(model, triangle, kPlaces[which])) > kTolerance;

@@ -5,12 +5,12 @@
 #include "tests/support/covers.h"
 #include "tests/support/mixtures.h"
 
-// Tests rays that arrive with a known hit. A structure replaces the hit only by a nearer one, or by an
-// equally near one with a lower primitive number.
+// Tests nearest-hit queries of rays that already have a hit. A structure replaces the hit only by a nearer
+// one, or by an equally near one with a lower primitive number.
 namespace orrery::test {
 namespace {
 
-// Returns the hit of each ray with one primitive, found by the primitive's own kernel.
+// Returns the hit of each ray with `primitive`, found by the primitive's kernel.
 template <class T>
 std::vector<Hit<T>> hits_of(const Primitive<T>& primitive, const Rays<T>& rays) {
   std::vector<Hit<T>> found;
@@ -28,8 +28,8 @@ std::vector<Hit<T>> hits_of(const Primitive<T>& primitive, const Rays<T>& rays) 
   return found;
 }
 
-// Known hits to start from: of a random primitive, and of the last primitive among those at the nearest
-// distance.
+// Initial hits of each ray. `any` is with a random primitive, `last` with the last of the primitives at the
+// nearest distance.
 template <class T>
 struct StartingHits {
   std::vector<Hit<T>> any, last;
@@ -64,7 +64,7 @@ class KnownHits : public testing::TestWithParam<std::string> {
   void agree(const Json& scene, const Rays<T>& rays) {
     Structure<T> list(scene, "list"), structure(scene, GetParam());
     const std::vector<Hit<T>> nearest = list.closest(rays);
-    EXPECT_EQ(wrong<T>(structure.closest(rays, nearest), nearest), 0) << "the answer itself is known";
+    EXPECT_EQ(wrong<T>(structure.closest(rays, nearest), nearest), 0) << "the initial hit is the nearest";
     const StartingHits<T> known(list.geometry().primitives, rays, nearest);
     for (const auto& hits : {known.any, known.last}) {
       EXPECT_EQ(wrong<T>(structure.closest(rays, hits), nearest), 0);
@@ -77,7 +77,7 @@ class KnownHits : public testing::TestWithParam<std::string> {
                               planes(5, 2), doubled(planes(5, 2))})
       for (const double half : {3.0, 1000.0}) {
         Rays<T> rays = any_rays<T>(half, 3000, 3);
-        for (Ray<T>& ray : rays)  // most distant rays would miss
+        for (Ray<T>& ray : rays)  // most rays from afar would miss
           if (half > 3) ray.direction = Vec3<T>(safe_normalize(Vec3d(-ray.origin)));
         agree<T>(scene, subsample_rays(rays));
       }

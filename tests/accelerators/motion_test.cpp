@@ -4,13 +4,14 @@
 #include "tests/support/covers.h"
 #include "tests/support/random.h"
 
-// Tests structures over moving geometry, which are refitted from the previous moment or rebuilt.
+// Tests structures over moving geometry. Each frame refits the structure of the previous frame or builds a
+// new one.
 namespace orrery::test {
 namespace {
 
-// Square with side * side places for objects.
+// Grid of side * side positions for objects.
 struct Square {
-  int side, step;  // step * step = 1 modulo side * side: each is the partner of its partner
+  int side, step;  // step * step = 1 modulo side * side, so partner_of(partner_of(i)) = i
 
   int size() const { return side * side; }
   Vec3d place_of(int i) const {
@@ -76,7 +77,7 @@ struct UpdateCounts {
   double worst = 1;
 };
 
-// Compares each structure, frame by frame, with the list of that moment and with a freshly built structure.
+// For each frame, compares the updated structure and a newly built one with the list at the same time.
 template <class T>
 UpdateCounts follow(const Json& json, const std::string& accelerator, int frames, int rays_a_frame,
                     double half = 7) {
@@ -100,7 +101,7 @@ UpdateCounts follow(const Json& json, const std::string& accelerator, int frames
 
 class Motion : public StructureTest {
  protected:
-  // Expects hierarchies to be refitted at first, and rebuilt when their boxes stretch over half the square.
+  // Expects hierarchies to be refitted at first, and rebuilt when their boxes have grown to half the grid.
   // All other structures are rebuilt for each frame.
   static void expect_both(const UpdateCounts& followed) {
     const bool hierarchy = GetParam() == "bottom-up" || GetParam() == "bvh";
@@ -171,7 +172,7 @@ TEST_P(Motion, MissesTrianglesFlattenedToLines) {
   Json mesh = {{"type", "mesh"}, {"material", "white"}}, lines = Json::array();
   Rays<float> rays;
   for (int i = 0; i < 1000; ++i) {
-    const auto exact = [&](double half) {  // multiples of 1/64, so that halves are on the line
+    const auto exact = [&](double half) {  // multiples of 1/64, so that midpoints are exact
       const Vec3d v = random.in_cube(64 * half);
       return Vec3d(std::round(v.x), std::round(v.y), std::round(v.z)) / 64;
     };

@@ -21,7 +21,7 @@ Network::Inputs<float> random_inputs(Random& random) {
   return in;
 }
 
-// Evaluates one dense layer as in textbooks: weights row by row, each row followed by its bias.
+// Evaluates one dense layer. The weights are stored row by row, each row followed by its bias.
 std::vector<double> layer(const float*& weight, const std::vector<double>& in, std::size_t outputs) {
   std::vector<double> out;
   for (std::size_t j = 0; j < outputs; ++j) {
@@ -46,7 +46,8 @@ std::vector<double> plain_scores(const Network& network, const Network::Inputs<f
   return scores;
 }
 
-// Returns a network with random weights, whose signs and magnitudes differ from the initial ones.
+// Returns a network with random weights. Their signs and magnitudes differ from those of an untrained
+// network.
 Network some_network(std::uint64_t seed) {
   Random random(seed);
   Network network;
@@ -88,7 +89,7 @@ TYPED_TEST(Scores, MatchesReferenceEvaluation) {
   }
 }
 
-// Returns examples labelled by boxes in input space, which are not linearly separable.
+// Returns examples labelled by boxes in input space. The labels are not linearly separable.
 std::vector<NetworkExample> examples(int count, std::uint64_t seed) {
   Random random(seed);
   std::vector<NetworkExample> examples;
@@ -141,7 +142,8 @@ TEST(Training, IsDeterministicForEqualSeeds) {
   EXPECT_NE(once.weights, train_network(seen, options).weights);
 }
 
-// Shadow rays from a floor under two balls towards a light: the predictor learns the place of each ball.
+// Shadow rays from a floor under two balls towards a light: the predictor learns which ball occludes each
+// region.
 TEST(NetworkPredictor, ProposesLearnedOccluders) {
   Random random(4);
   std::vector<OcclusionSample> samples;

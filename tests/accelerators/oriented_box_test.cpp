@@ -16,7 +16,7 @@ OrientedBox<double> box_of(const Hull& hull) {
   return OrientedBox<double>::around(principal_axes(moments), hull);
 }
 
-// Returns the smallest measure of 1,000 boxes with random axes.
+// Returns the smallest measure among 1,000 bounding boxes of `hull` with random axes.
 template <class Measure>
 double best_of_random(const Hull& hull, const Measure& measure) {
   Random random(11);
@@ -92,7 +92,8 @@ TEST(OrientedBox, FitsRotatedSlab) {
   EXPECT_NEAR(box_of(slab).volume(), 8, 1e-9);
 }
 
-// Points heaped in two corners rotate axes fitted to points, but not axes fitted to area.
+// Clusters of points in two corners rotate axes that are fitted to points, but not axes that are fitted to
+// area.
 TEST(OrientedBox, IgnoresTessellationDensity) {
   covers("F8");
   Hull rectangle{{Vec3d(0, 0, 0), Vec3d(4, 0, 0), Vec3d(4, 1, 0)},

@@ -51,7 +51,7 @@ void expect_agreement() {
   EXPECT_EQ(tree.occluded(rays, T(2.9)), list.occluded(rays, T(2.9)));
 }
 
-// Returns a mesh whose tree exceeds the caches, which selects another traversal.
+// Returns a mesh whose tree exceeds the caches, so that the traversal for large trees is used.
 Json rough_sea() {
   constexpr int kSide = 440;
   Random random(4);
@@ -75,7 +75,7 @@ TEST(LargeBvh, MatchesList) {
   Rays<float> rays = camera_rays<float>();
   rays.resize(rays.size() / 2);
   Random random(5);
-  for (int i = 0; i < 1024; ++i) {  // along the waves and through them, no two alike
+  for (int i = 0; i < 1024; ++i) {  // incoherent rays along the waves and through them
     const Vec3d from = random.in_cube(1), way = random.direction();
     rays.push_back({Vec3f(Vec3d(from.x, from.y, from.z * 0.05)), Vec3f(Vec3d(way.x, way.y, way.z * 0.3))});
   }
@@ -95,8 +95,8 @@ TEST(PacketTraversal, MatchesListBeyondPacketBudget) {
   expect_agreement<double>();
 }
 
-// A packet may visit a thousand times as many primitives as each of its rays. Neighbouring shadow rays from a
-// bundle to a light pass many straws together, but few each.
+// A packet may test a thousand times as many primitives as one of its rays alone. A packet of shadow rays
+// from the bundle to a light passes many straws, but each ray passes few.
 TEST(PacketTraversal, SwitchesToCheaperSingleRays) {
   const Json scene = straws(4000);
   Structure<float> tree(scene, "bvh");
@@ -109,7 +109,7 @@ TEST(PacketTraversal, SwitchesToCheaperSingleRays) {
       shadows.push_back({at, normalize(Vec3f(0.3f, 2, 0.5f) - at)});
     }
   ASSERT_GT(shadows.size(), 500u);
-  Rays<float> mixed;  // the same rays, incoherent neighbours
+  Rays<float> mixed;  // the same rays in an incoherent order
   for (std::size_t i = 0; i < shadows.size(); ++i) mixed.push_back(shadows[i * 389 % shadows.size()]);
   const auto tests_of = [&](const Rays<float>& rays) {
     Structure<float> fresh(scene, "bvh");

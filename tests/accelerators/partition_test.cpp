@@ -10,8 +10,8 @@
 namespace orrery::test {
 namespace {
 
-// Structures that may reference a primitive more than once, with the maximum number of references per
-// primitive on average.
+// Upper bound on the average references per primitive, for each structure that may reference a primitive more
+// than once.
 const std::map<std::string, std::size_t> kShares{
     {"octree", 8}, {"kd-median", 3}, {"kd-sah", 3}, {"grid", 16}, {"adaptive-grid", 12}};
 
@@ -102,7 +102,8 @@ TEST_P(Partitions, ReturnsNearerOfLongAndShortPrimitives) {
 
 INSTANTIATE_TEST_SUITE_P(All, Partitions, testing::ValuesIn(sharing_names()), parameter_name);
 
-// Returns a closed blob of about 10,000 triangles, a metre wide, in a ring of long walls, a kilometre wide.
+// Returns a closed mesh of about 10,000 triangles that is 1 m wide, in a ring of long walls that is 1 km
+// wide.
 Json small_mesh_in_large_ring() {
   Json positions = Json::array(), indices = Json::array();
   constexpr int kRows = 50, kColumns = 100;
@@ -145,7 +146,7 @@ TEST(AdaptiveGrid, ResolvesSmallMeshInLargeScene) {
   }
   const double hierarchy = tests_per_ray(scene, "bvh", rays);
   EXPECT_LE(tests_per_ray(scene, "adaptive-grid", rays), 5 * hierarchy);
-  EXPECT_GT(tests_per_ray(scene, "grid", rays), 5 * hierarchy) << "the trap is none";
+  EXPECT_GT(tests_per_ray(scene, "grid", rays), 5 * hierarchy) << "the scene is not hard for a uniform grid";
 }
 
 // Expects at most 1.3 times the primitive tests of a bottom-up tree, both for evenly spread triangles and for

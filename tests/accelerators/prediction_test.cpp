@@ -5,8 +5,7 @@
 #include "tests/support/covers.h"
 #include "tests/support/mixtures.h"
 
-// Predictions, whether right, wrong or not a primitive at all, must not change shadows from those of the
-// list.
+// Tests that predictions never change shadows, whether they are right, wrong or not valid primitive numbers.
 namespace orrery::test {
 namespace {
 
@@ -38,7 +37,7 @@ class Adversary final : public Predictor<T> {
   }
 
  private:
-  // Returns a primitive that no ray of the register hits, or kNoPrimitive.
+  // Returns a primitive that no ray of the lane group hits, or kNoPrimitive if every primitive is hit.
   IndexOf<T> missed(const RayBatch<T>& rays, int group) const {
     const LaneGroups one = LaneGroups::single(group);
     const auto tried = std::make_unique<RayBatch<T>>(rays);

@@ -89,13 +89,14 @@ TYPED_TEST(RayOrders, SortsEqualKeysStably) {
   using T = TypeParam;
   const Rays<T> same(900, {{T(1), T(2), T(3)}, {T(0), T(1), T(0)}});
   EXPECT_EQ(order_in<T>(same), ascending(900));
-  std::vector<int> expected;  // two alternating kinds
+  std::vector<int> expected;  // the even rays, then the odd ones
   for (const int kind : {0, 1})
     for (int i = kind; i < 600; i += 2) expected.push_back(i);
   Rays<T> places, directions;
   for (int i = 0; i < 600; ++i) {
     places.push_back({{T(i % 2), T(0), T(0)}, {T(0), T(1), T(0)}});
-    directions.push_back({{T(0), T(0), T(0)}, {T(i % 2) / 5, T(1), T(0)}});  // neighbouring cells
+    // In adjacent cells of direction space.
+    directions.push_back({{T(0), T(0), T(0)}, {T(i % 2) / 5, T(1), T(0)}});
   }
   EXPECT_EQ(order_in<T>(places), expected);
   EXPECT_EQ(order_in<T>(directions), expected);
@@ -120,7 +121,7 @@ TYPED_TEST(RayOrders, GroupsNearbyOrigins) {
   EXPECT_EQ(changes, 7);
 }
 
-// Origins in one point leave the order to the directions, octant by octant.
+// Rays from one point are sorted by the octants of their directions.
 TYPED_TEST(RayOrders, SortsSharedOriginByOctant) {
   covers("F17");
   using T = TypeParam;
@@ -145,7 +146,6 @@ TYPED_TEST(RayOrders, PlacesNanInLowestCell) {
   EXPECT_EQ(order_in<T>(rays), (std::vector<int>{1, 2, 3, 0}));
 }
 
-// Inactive rays are not touched.
 TYPED_TEST(RayOrders, LeavesInactiveRaysUnchanged) {
   using T = TypeParam;
   Structure<T> sorted(balls(20, 1), "bvh", reorder<T>);

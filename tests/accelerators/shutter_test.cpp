@@ -9,15 +9,15 @@
 #include "tests/support/random.h"
 #include "tests/support/structures.h"
 
-// Tests that geometry moving during the exposure is hit at its position at each ray's time.
+// Tests motion blur: each ray must hit moving geometry where it is at the time of the ray.
 namespace orrery::test {
 namespace {
 
 const Exposure kExposure{0.1, 1.3};
 
-// Returns a scene with moving and resting instances, meshes before, between and after resting ones, and
-// planes tilted by an instance. Some instances have a deforming model. Keyframes are within and outside of
-// the exposure.
+// Returns a scene with static and moving instances and planes tilted by an instance. Static meshes are
+// between moving ones. Some instances contain a deforming mesh. Keyframes are within and outside of the
+// exposure.
 Json busy_scene() {
   Random random(8);
   Json scene = scene_of(R"([
@@ -227,7 +227,7 @@ TEST(MotionBlur, BoundsRotatingGeometryTightly) {
   }
 }
 
-// Structures over resting geometry are reused for the next exposure.
+// Structures over static geometry are reused for the next exposure.
 TEST(MotionBlur, ReusesStaticGeometryAcrossExposures) {
   const auto scene = load(busy_scene());
   const auto& type = type_named("bvh");

@@ -42,8 +42,8 @@ Json scene_of_ball(const Ball& ball) {
   return scene_with({{"type", "mesh"}, {"positions", positions}, {"indices", indices}});
 }
 
-// Returns aimed rays. Every other group of 16 has separate origins. The rest share one, so that packets may
-// traverse together.
+// Returns rays towards vertices and edge midpoints. Every other group of 16 rays has separate origins. The
+// rays of each remaining group share an origin, so that packets can traverse them together.
 template <class T>
 Rays<T> aimed(const Ball& ball, const Vec3d& middle, int count) {
   Random random(12);
@@ -77,7 +77,7 @@ class Watertight : public testing::TestWithParam<std::string> {
     for (const char occluded : structure.occluded(rays, std::numeric_limits<T>::infinity())) out += !occluded;
     EXPECT_EQ(out, 0) << "of " << rays.size() << " shadow rays";
   }
-  // Returns the ray count: a million for the production structure.
+  // Returns the ray count: a million for the default structure, 50,000 for the others.
   static int rays() { return GetParam() == "bvh" ? 1'000'000 : 50'000; }
 };
 
@@ -87,7 +87,7 @@ TEST_P(Watertight, LeaksNoRaysAroundOrigin) {
   expect_no_leak<double>({}, rays());
 }
 
-// Uses the position of Embree's own test.
+// The position is from Embree's watertightness test.
 TEST_P(Watertight, LeaksNoRaysFarFromOrigin) {
   covers("A12 A27 A28");
   expect_no_leak<float>({148376, 1234, -223423}, rays());

@@ -17,7 +17,7 @@
 #include "tests/support/eventually.h"
 #include "tests/support/pictures.h"
 
-// Tests the order of admission, and rejections.
+// Tests the order of admission, preemption and the rejection of requests.
 namespace orrery {
 namespace {
 
@@ -28,7 +28,7 @@ using test::Waiters;
 
 TEST(Admission, SharesSlotsByCost) {
   ManualTimer timer;
-  Admission admission({.running = 1, .queue_rays = 1000}, timer);
+  Admission admission({.running = 1, .max_queued_rays = 1000}, timer);
   Waiters waiters(admission);
   {
     const auto ticket = admission.enter(demand("z"), kNever);
@@ -36,12 +36,13 @@ TEST(Admission, SharesSlotsByCost) {
     for (const char* name : {"b1", "b2"}) waiters.add(name, demand("b", 15));
   }
   waiters.join();
-  EXPECT_EQ(waiters.order(), (TurnOrder{"a1", "b1", "a2", "a3", "b2", "a4"}));  // finish at 10 15 20 30 30 40
+  // Virtual finish times: 10 15 20 30 30 40.
+  EXPECT_EQ(waiters.order(), (TurnOrder{"a1", "b1", "a2", "a3", "b2", "a4"}));
 }
 
 TEST(Admission, PrefersInteractiveWorkButReservesBatchSlot) {
   ManualTimer timer;
-  Admission admission({.running = 2, .queue_rays = 1000}, timer);
+  Admission admission({.running = 2, .max_queued_rays = 1000}, timer);
   Waiters waiters(admission);
   {
     const auto batch = admission.enter(demand("z", 10, Priority::batch), kNever);
@@ -52,7 +53,7 @@ TEST(Admission, PrefersInteractiveWorkButReservesBatchSlot) {
       waiters.add("i2", demand("a"));
     }
     EXPECT_TRUE(test::eventually([&] { return waiters.order().size() == 2; }));
-    EXPECT_EQ(admission.waiting(), 1);  // batch work may hold half of the slots, that is one
+    EXPECT_EQ(admission.waiting(), 1);  // batch work gets at most half of the slots
     EXPECT_EQ(waiters.order(), (TurnOrder{"i1", "i2"}));
   }
   waiters.join();
@@ -66,14 +67,14 @@ TEST(Admission, PrefersInteractiveWorkButReservesBatchSlot) {
     others.add("batch", demand("a", 10, Priority::batch));
   }
   others.join();
-  EXPECT_EQ(others.order(), (TurnOrder{"batch", "i"}));  // no batch work was running
+  EXPECT_EQ(others.order(), (TurnOrder{"batch", "i"}));  // no batch work is running
 }
 
 using std::chrono_literals::operator""ms;
 
 TEST(Admission, PreemptsForOtherClientAfterTimeSlice) {
   ManualTimer timer;
-  Admission admission({.running = 1, .queue_rays = 1000}, timer);
+  Admission admission({.running = 1, .max_queued_rays = 1000}, timer);
   Waiters waiters(admission);
   std::optional ticket(admission.enter(demand("z"), kNever));
   waiters.add("a1", demand("a"));
@@ -96,7 +97,7 @@ TEST(Admission, PreemptsForOtherClientAfterTimeSlice) {
 
 TEST(Admission, PreemptsForSameClientAfterLongerTimeSlice) {
   ManualTimer timer;
-  Admission admission({.running = 1, .queue_rays = 1000}, timer);
+  Admission admission({.running = 1, .max_queued_rays = 1000}, timer);
   Waiters waiters(admission);
   const auto ticket = admission.enter(demand("a"), kNever);
   waiters.add("a1", demand("a"));
@@ -110,12 +111,12 @@ TEST(Admission, PreemptsForSameClientAfterLongerTimeSlice) {
 
 TEST(Admission, PreemptsLongestHeldSlotOnArrival) {
   ManualTimer timer;
-  Admission admission({.running = 2, .queue_rays = 1000}, timer);
+  Admission admission({.running = 2, .max_queued_rays = 1000}, timer);
   std::optional older(admission.enter(demand("z"), kNever));
   timer.advance(1ms);
   std::optional newer(admission.enter(demand("z"), kNever));
   timer.advance(std::chrono::hours(1));
-  EXPECT_FALSE(older->expired());  // nobody waits
+  EXPECT_FALSE(older->expired());  // no request is waiting
   {
     const auto brief = admission.enter(demand("a"), kNever);  // admitted at once
     EXPECT_TRUE(older->expired());
@@ -136,11 +137,11 @@ class CountingTimer final : public ManualTimer {
   mutable std::atomic<int> asked{0};
 };
 
-// Resumed work is charged for the time used before. A ticket that used 60 ms is admitted before one that used
-// 600 ms.
+// Resumed work is ordered by the time that it has used. A ticket that used 60 ms is admitted before one that
+// used 600 ms.
 TEST(Admission, ChargesUsedTimeToResumedWork) {
   CountingTimer timer;
-  Admission admission({.running = 1, .queue_rays = 1e9}, timer);
+  Admission admission({.running = 1, .max_queued_rays = 1e9}, timer);
   std::optional<Admission::Ticket> last;
   std::list<Admission::Ticket> tickets;
   for (const auto held : {600ms, 60ms}) {
@@ -149,7 +150,7 @@ TEST(Admission, ChargesUsedTimeToResumedWork) {
     timer.advance(held);
     last.emplace(admission.enter(demand("y"), kNever));
   }
-  TurnOrder order;  // guarded by the only slot
+  TurnOrder order;  // accessed only with the single slot held
   const auto renew = [&](Admission::Ticket& ticket, const char* name) {
     const int before = timer.asked;
     std::thread thread([&order, &ticket, name] {
@@ -158,7 +159,7 @@ TEST(Admission, ChargesUsedTimeToResumedWork) {
       const auto done = std::move(ticket);
     });
     EXPECT_TRUE(test::eventually([&] { return timer.asked > before; }));
-    EXPECT_EQ(admission.waiting(), 2);  // the thread holds a lock until it waits
+    EXPECT_EQ(admission.waiting(), 2);  // waiting() blocks until renew() waits
     return thread;
   };
   std::thread first = renew(tickets.front(), "600 ms"), second = renew(tickets.back(), "60 ms");
@@ -168,7 +169,7 @@ TEST(Admission, ChargesUsedTimeToResumedWork) {
   EXPECT_EQ(order, (TurnOrder{"60 ms", "600 ms"}));
 }
 
-// Holds a slot with work of "slow" while another client waits all the time.
+// Occupies a slot for `held` with work of the client "slow" while another client waits.
 void occupy_slot_while_contended(Admission& admission, ManualTimer& timer, std::chrono::milliseconds held) {
   Waiters others(admission);
   {
@@ -179,11 +180,11 @@ void occupy_slot_while_contended(Admission& admission, ManualTimer& timer, std::
   others.join();
 }
 
-// The overrun is charged by time, not by the measured rate of slow work.
+// The overrun is charged by time at a fixed rate, not by the measured rate of the slow work.
 TEST(Admission, ChargesOverrunToClient) {
   ManualTimer timer;
-  Admission admission({.running = 1, .queue_rays = 1e9}, timer);
-  occupy_slot_while_contended(admission, timer, 1000ms);  // as 10 million rays
+  Admission admission({.running = 1, .max_queued_rays = 1e9}, timer);
+  occupy_slot_while_contended(admission, timer, 1000ms);  // charged as 10 million rays
   Waiters waiters(admission);
   std::optional ticket(admission.enter(demand("z", 30'000), kNever));
   waiters.add("slow", demand("slow", 30'000));
@@ -193,10 +194,10 @@ TEST(Admission, ChargesOverrunToClient) {
   EXPECT_EQ(waiters.order(), (TurnOrder{"quick", "quick", "quick", "slow"}));
 }
 
-// A client that used the service alone for a minute owes nothing to later clients.
+// A client that used the service alone for a minute has no debt to later clients.
 TEST(Admission, ChargesNothingWithoutContention) {
   ManualTimer timer;
-  Admission admission({.running = 1, .queue_rays = 1e9}, timer);
+  Admission admission({.running = 1, .max_queued_rays = 1e9}, timer);
   {
     const auto ticket = admission.enter(demand("slow", 30'000), kNever);
     timer.advance(60'000ms);
@@ -210,15 +211,15 @@ TEST(Admission, ChargesNothingWithoutContention) {
   EXPECT_EQ(waiters.order(), (TurnOrder{"slow", "quick", "quick", "quick"}));
 }
 
-// The debt is bounded, so that a client waits for seconds and not for minutes.
+// The debt is limited, so that the client waits for seconds and not for minutes.
 TEST(Admission, BoundsClientDebt) {
   ManualTimer timer;
-  Admission admission({.running = 1, .queue_rays = 1e15}, timer);
-  occupy_slot_while_contended(admission, timer, 60'000ms);  // as 600 million rays; 16 slots are 8 million
+  Admission admission({.running = 1, .max_queued_rays = 1e15}, timer);
+  occupy_slot_while_contended(admission, timer, 60'000ms);  // 600 million rays, limited to 8 million
   Waiters waiters(admission);
   std::optional ticket(admission.enter(demand("z", 30'000), kNever));
   waiters.add("slow", demand("slow", 30'000));
-  for (int i = 0; i < 20; ++i) waiters.add("quick", demand("quick", 1e9));  // 0.52 million each, one slot
+  for (int i = 0; i < 20; ++i) waiters.add("quick", demand("quick", 1e9));  // one slice each: 0.52 million
   ticket.reset();
   waiters.join();
   const TurnOrder order = waiters.order();
@@ -227,10 +228,10 @@ TEST(Admission, BoundsClientDebt) {
   EXPECT_LE(before, 17);
 }
 
-// Long work is charged for 50 ms at first. It starts next to shorter work, not after hours of it.
+// Long work is first charged for one time slice of 50 ms, so that it need not wait for all shorter work.
 TEST(Admission, ChargesLongWorkForFirstSliceOnly) {
   ManualTimer timer;
-  Admission admission({.running = 1, .queue_rays = 1e15}, timer);
+  Admission admission({.running = 1, .max_queued_rays = 1e15}, timer);
   Waiters waiters(admission);
   {
     const auto ticket = admission.enter(demand("z"), kNever);
@@ -238,19 +239,20 @@ TEST(Admission, ChargesLongWorkForFirstSliceOnly) {
     waiters.add("long", demand("b", 1e12));
   }
   waiters.join();
-  EXPECT_EQ(waiters.order(), (TurnOrder{"small", "long", "small"}));  // finish at 0.4, 0.52, 0.8 million
+  // Virtual finish times: 0.4, 0.52, 0.8 million.
+  EXPECT_EQ(waiters.order(), (TurnOrder{"small", "long", "small"}));
 }
 
 TEST(Admission, PreemptsBatchRatherThanInteractiveWork) {
   ManualTimer timer;
-  Admission admission({.running = 2, .queue_rays = 1000}, timer);
+  Admission admission({.running = 2, .max_queued_rays = 1000}, timer);
   const auto batch = admission.enter(demand("z", 10, Priority::batch), kNever);
   const auto interactive = admission.enter(demand("z"), kNever);
   Waiters waiters(admission);
   waiters.add("batch", demand("b", 10, Priority::batch));
   timer.advance(50ms);
   EXPECT_TRUE(batch.expired());
-  EXPECT_FALSE(interactive.expired());  // batch work may hold half of the slots, that is one
+  EXPECT_FALSE(interactive.expired());  // batch work gets at most half of the slots
   waiters.join();
   timer.advance(50ms);
   const auto other = admission.enter(demand("c"), kNever);
@@ -259,7 +261,7 @@ TEST(Admission, PreemptsBatchRatherThanInteractiveWork) {
 
 TEST(Admission, PreemptsInteractiveWorkIfNoBatchWorkRuns) {
   ManualTimer timer;
-  Admission admission({.running = 1, .queue_rays = 1000}, timer);
+  Admission admission({.running = 1, .max_queued_rays = 1000}, timer);
   const auto interactive = admission.enter(demand("z"), kNever);
   timer.advance(50ms);
   const auto batch = admission.enter(demand("b", 10, Priority::batch), kNever);
@@ -271,9 +273,9 @@ TEST(Admission, PreemptsInteractiveWorkIfNoBatchWorkRuns) {
 
 TEST(Admission, DelaysClientsWithManyPreemptions) {
   ManualTimer timer;
-  Admission admission({.running = 1, .queue_rays = 1000}, timer);
+  Admission admission({.running = 1, .max_queued_rays = 1000}, timer);
   std::list<Admission::Ticket> own;
-  for (int i = 0; i < 2; ++i) {  // two for each slot
+  for (int i = 0; i < 2; ++i) {  // two preemptions per slot delay the client
     own.push_back(admission.enter(demand("z"), kNever));
     timer.advance(50ms);
     const auto other = admission.enter(demand("a"), kNever);
@@ -281,7 +283,7 @@ TEST(Admission, DelaysClientsWithManyPreemptions) {
   }
   Waiters waiters(admission);
   waiters.add("z", demand("z"));
-  EXPECT_EQ(admission.running(), 0);  // though the place is free
+  EXPECT_EQ(admission.running(), 0);  // although the slot is free
   { const auto batch = admission.enter(demand("z", 10, Priority::batch), kNever); }
   EXPECT_EQ(waiters.order(), TurnOrder{});
   own.pop_front();
@@ -289,10 +291,10 @@ TEST(Admission, DelaysClientsWithManyPreemptions) {
   EXPECT_EQ(waiters.order(), TurnOrder{"z"});
 }
 
-// Work that has begun cannot be rejected, whatever its remaining cost.
+// Preempted work cannot be rejected, and its remaining cost does not fill the queue.
 TEST(Admission, QueuesOthersDespiteLargePreemptedWork) {
   ManualTimer timer;
-  Admission admission({.running = 1, .queue_rays = 1000}, timer);
+  Admission admission({.running = 1, .max_queued_rays = 1000}, timer);
   std::optional large(admission.enter(demand("z", 1e12), kNever));
   timer.advance(50ms);
   std::optional other(admission.enter(demand("a"), kNever));
@@ -310,7 +312,7 @@ TEST(Admission, QueuesOthersDespiteLargePreemptedWork) {
 
 TEST(Admission, ReportsShortestClientWait) {
   ManualTimer timer;
-  Admission admission({.running = 1, .queue_rays = 1000}, timer);
+  Admission admission({.running = 1, .max_queued_rays = 1000}, timer);
   EXPECT_EQ(admission.shortest_client_wait(), Clock::duration{});
   Waiters waiters(admission);
   {
@@ -326,9 +328,9 @@ TEST(Admission, ReportsShortestClientWait) {
   waiters.join();
 }
 
-TEST(Admission, HoldsNoSlotAfterCancelledRenewal) {
+TEST(Admission, OccupiesNoSlotAfterCancelledRenewal) {
   ManualTimer timer;
-  Admission admission({.running = 1, .queue_rays = 1000}, timer);
+  Admission admission({.running = 1, .max_queued_rays = 1000}, timer);
   std::stop_source stop;
   std::optional first(admission.enter(demand("z"), stop.get_token()));
   timer.advance(50ms);
@@ -345,13 +347,13 @@ TEST(Admission, HoldsNoSlotAfterCancelledRenewal) {
 
 TEST(Admission, BoundsQueueByCost) {
   ManualTimer timer;
-  Admission admission({.running = 1, .queue_rays = 100}, timer);
+  Admission admission({.running = 1, .max_queued_rays = 100}, timer);
   Waiters waiters(admission);
   {
     const auto ticket = admission.enter(demand("z"), kNever);
     EXPECT_FALSE(admission.full());
-    waiters.add("large", demand("a", 1e12));  // a single item may exceed the limit
-    EXPECT_FALSE(admission.full());           // for another client
+    waiters.add("large", demand("a", 1e12));  // a client's only work may exceed the limit
+    EXPECT_FALSE(admission.full());           // the queue is not full for other clients
     EXPECT_THROW(admission.enter(demand("a", 1), kNever), Busy);
   }
   waiters.join();
@@ -369,7 +371,7 @@ TEST(Admission, BoundsQueueByCost) {
 
 TEST(Admission, BoundsQueueOfEachPrioritySeparately) {
   ManualTimer timer;
-  Admission admission({.running = 2, .queue_rays = 100}, timer);
+  Admission admission({.running = 2, .max_queued_rays = 100}, timer);
   Waiters waiters(admission);
   {
     const auto batch = admission.enter(demand("z", 10, Priority::batch), kNever);
@@ -385,7 +387,7 @@ TEST(Admission, BoundsQueueOfEachPrioritySeparately) {
 
 TEST(Admission, AlternatesPrioritiesOnSingleSlot) {
   ManualTimer timer;
-  Admission admission({.running = 1, .queue_rays = 1000}, timer);
+  Admission admission({.running = 1, .max_queued_rays = 1000}, timer);
   Waiters waiters(admission);
   {
     const auto ticket = admission.enter(demand("z"), kNever);
@@ -396,11 +398,11 @@ TEST(Admission, AlternatesPrioritiesOnSingleSlot) {
   EXPECT_EQ(waiters.order(), (TurnOrder{"b1", "i1", "b2", "i2", "b3"}));
 }
 
-// Work starts at last after a long delay. Its old virtual finish time must not put new work ahead of waiting
-// clients.
+// Work that starts after a long delay has an old virtual finish time. New work must not overtake waiting
+// clients because of it.
 TEST(Admission, KeepsVirtualTimeMonotonic) {
   ManualTimer timer;
-  Admission admission({.running = 1, .queue_rays = 1e9}, timer);
+  Admission admission({.running = 1, .max_queued_rays = 1e9}, timer);
   Waiters waiters(admission);
   std::list<Admission::Ticket> lost;
   for (int i = 0; i < 2; ++i) {
@@ -409,13 +411,14 @@ TEST(Admission, KeepsVirtualTimeMonotonic) {
     const auto other = admission.enter(demand("y"), kNever);
   }
   std::optional<Admission::Ticket> old_ticket;
-  std::thread old([&] { old_ticket.emplace(admission.enter(demand("x"), kNever)); });  // has lost many slots
+  // Client x was preempted too often.
+  std::thread old([&] { old_ticket.emplace(admission.enter(demand("x"), kNever)); });
   EXPECT_TRUE(test::eventually([&] { return admission.waiting() == 3; }));
   for (int i = 0; i < 10; ++i) const auto work = admission.enter(demand("y", 1000), kNever);
   std::optional ticket(admission.enter(demand("y", 1000), kNever));
   waiters.add("v", demand("v"));
   lost.pop_front();
-  ticket.reset();  // now the old work starts
+  ticket.reset();  // the delayed work starts
   old.join();
   waiters.add("z", demand("z", 1000));
   old_ticket.reset();
@@ -425,7 +428,7 @@ TEST(Admission, KeepsVirtualTimeMonotonic) {
 
 TEST(Admission, DropsWorkOfClientWithLargestBacklog) {
   ManualTimer timer;
-  Admission admission({.running = 1, .queue_rays = 100}, timer);
+  Admission admission({.running = 1, .max_queued_rays = 100}, timer);
   Waiters waiters(admission);
   {
     const auto ticket = admission.enter(demand("z"), kNever);
@@ -433,9 +436,9 @@ TEST(Admission, DropsWorkOfClientWithLargestBacklog) {
     waiters.add("b1", demand("b", 30));
     EXPECT_TRUE(test::eventually([&] { return !waiters.order().empty(); }));
     EXPECT_EQ(waiters.order(), (TurnOrder{"a3 429"}));
-    waiters.add("a4", demand("a", 30));  // now a has 60 and b 30
+    waiters.add("a4", demand("a", 30));  // queued: 60 of a, 30 of b
     EXPECT_EQ(waiters.order(), (TurnOrder{"a3 429", "a4 429"}));
-    waiters.add("b2", demand("b", 30));  // b would not have less than a
+    waiters.add("b2", demand("b", 30));  // b would then not have less queued than a
     EXPECT_EQ(waiters.order(), (TurnOrder{"a3 429", "a4 429", "b2 429"}));
   }
   waiters.join();
@@ -444,7 +447,7 @@ TEST(Admission, DropsWorkOfClientWithLargestBacklog) {
 
 TEST(Admission, NeverRejectsReenteredWork) {
   ManualTimer timer;
-  Admission admission({.running = 1, .queue_rays = 10}, timer);
+  Admission admission({.running = 1, .max_queued_rays = 10}, timer);
   std::atomic<bool> done{false};
   std::thread again;
   {
@@ -462,7 +465,7 @@ TEST(Admission, NeverRejectsReenteredWork) {
 
 TEST(Admission, RemovesCancelledWorkFromQueue) {
   ManualTimer timer;
-  Admission admission({.running = 1, .queue_rays = 100}, timer);
+  Admission admission({.running = 1, .max_queued_rays = 100}, timer);
   const auto ticket = admission.enter(demand("z"), kNever);
   std::stop_source stop;
   std::thread waits([&] { EXPECT_THROW(admission.enter(demand("a"), stop.get_token()), Cancelled); });
@@ -473,13 +476,13 @@ TEST(Admission, RemovesCancelledWorkFromQueue) {
   EXPECT_EQ(admission.running(), 1);
 }
 
-// The default queue takes 20 images of several samples at once. One of them is rendering, with no rate
-// measured before.
+// The default queue accepts 20 images of several samples at once: one rendering, 19 queued. No throughput has
+// been measured before.
 TEST(Admission, QueuesTwentyImagesByDefault) {
   for (const char* name :
        {"paper", "orrery", "sphereflake-3", "mirrors", "material-reflective", "light-spot"}) {
     ManualTimer timer;
-    Admission admission({.running = 1, .queue_rays = Settings{}.queue_rays}, timer);
+    Admission admission({.running = 1, .max_queued_rays = Settings{}.max_queued_rays}, timer);
     const auto scene = test::load(test::sample(name));
     RenderRequest request = test::size(800, 600);
     request.samples = 4;

@@ -13,7 +13,7 @@ std::string picture_file(int side) {
   return encode_png(image);
 }
 
-TEST(AssetStore, DecodesPictureOnceForAllScenes) {
+TEST(AssetStore, DecodesImageOnceForAllScenes) {
   AssetStore store(1 << 20);
   const std::string file = picture_file(16), name = sha256_hex(file);
   store.add(name, file, "one");

@@ -4,7 +4,7 @@
 
 #include <random>
 
-// Tests evictions from a full store.
+// Tests which entries a full store evicts.
 namespace orrery {
 namespace {
 
@@ -15,7 +15,7 @@ class FairSharesTest : public testing::Test {
  protected:
   static constexpr std::size_t kMost = 100;
 
-  // Returns false if there is no room. Records the evicted entries.
+  // Adds an entry and records the evicted entries. Returns false if the entry does not fit.
   bool add(const std::string& client, const std::string& id, std::size_t weight, FairShares::Rank rank = 0,
            FairShares::Ranks ranks = {}) {
     const auto evicted = shares_.make_room(client, weight, kMost, ranks);
@@ -57,14 +57,14 @@ TEST_F(FairSharesTest, EvictsOnlyFromFloodingClient) {
   EXPECT_EQ(lost[1], "1");
 }
 
-TEST_F(FairSharesTest, EvictsFromLargestHolder) {
+TEST_F(FairSharesTest, EvictsFromClientWithMost) {
   for (int i = 0; i < 8; ++i) add("most", "m" + std::to_string(i), 10);
   add("less", "l", 20);
   EXPECT_TRUE(add("new", "n", 30));
   EXPECT_EQ(evicted(), (Ids{"m0", "m1", "m2"}));
   EXPECT_TRUE(add("new", "o", 10));
   EXPECT_EQ(evicted(), Ids{"m3"});
-  EXPECT_TRUE(add("new", "p", 10)) << "it would hold 50 then, the other 40";
+  EXPECT_TRUE(add("new", "p", 10)) << "it would have 50 and \"most\" 40";
   EXPECT_EQ(evicted(), Ids{"n"});
 }
 
@@ -76,10 +76,10 @@ TEST_F(FairSharesTest, RejectsEntryLargerThanOtherShares) {
   EXPECT_FALSE(add("new", "large", 45));
   EXPECT_EQ(evicted(), Ids{});
   for (const char* id : {"a1", "a2"}) EXPECT_TRUE(shares_.holds(id, "a")) << id;
-  EXPECT_TRUE(shares_.holds("n", "new")) << "it stays as it was";
+  EXPECT_TRUE(shares_.holds("n", "new")) << "a rejected entry evicts nothing";
   EXPECT_EQ(shares_.weight(), 100U);
   EXPECT_TRUE(add("a", "a3", 10));
-  EXPECT_EQ(evicted(), Ids{"a1"}) << "the order of uses stays as well";
+  EXPECT_EQ(evicted(), Ids{"a1"}) << "a rejected entry does not change the order";
 }
 
 TEST_F(FairSharesTest, RemovesEntryWithItsLastHolder) {
@@ -87,7 +87,7 @@ TEST_F(FairSharesTest, RemovesEntryWithItsLastHolder) {
   shares_.hold("shared", "b");
   EXPECT_EQ(shares_.weight(), 30U);
   add("b", "more", 70);
-  EXPECT_TRUE(add("c", "c", 30));  // b holds 100, a 30: b gives up both, a keeps the shared one
+  EXPECT_TRUE(add("c", "c", 30));  // b has 100 and loses both, a has 30 and keeps the shared entry
   EXPECT_EQ(evicted(), Ids{"more"});
   EXPECT_TRUE(shares_.holds("shared", "a"));
   EXPECT_FALSE(shares_.holds("shared", "b"));
@@ -95,7 +95,7 @@ TEST_F(FairSharesTest, RemovesEntryWithItsLastHolder) {
   EXPECT_FALSE(shares_.release("shared", "a"));
   EXPECT_FALSE(shares_.release("shared", "a"));
   EXPECT_TRUE(shares_.release("shared", "b"));
-  EXPECT_EQ(shares_.weight(), 30U) << "of c";
+  EXPECT_EQ(shares_.weight(), 30U) << "only the entry of c is left";
 }
 
 TEST_F(FairSharesTest, EvictsLowRanksFirst) {
@@ -109,7 +109,7 @@ TEST_F(FairSharesTest, EvictsLowRanksFirst) {
   EXPECT_TRUE(add("y", "cached", 30, 0, {.own = 1, .others = 1}));
   EXPECT_EQ(evicted(), Ids{"more"});
   EXPECT_TRUE(add("y", "y", 20, 2));
-  EXPECT_EQ(evicted(), Ids{"kept"}) << "x holds most";
+  EXPECT_EQ(evicted(), Ids{"kept"}) << "x has the most";
   shares_.hold("kept too", "y", 1);
   EXPECT_EQ(shares_.rank("kept too"), 2U);
   EXPECT_EQ(shares_.rank("kept too", "y"), 1U);
@@ -124,14 +124,14 @@ TEST_F(FairSharesTest, EvictsStaleEntriesFirst) {
   now_ += seconds(60);
   shares_.touch("l1");
   EXPECT_TRUE(add("x", "x2", 20));
-  EXPECT_EQ(evicted(), Ids{"x1"}) << "x holds most, and the time is not over";
+  EXPECT_EQ(evicted(), Ids{"x1"}) << "x has the most, and no entry is stale yet";
   add("x", "x3", 40);
   now_ += seconds(1);
   EXPECT_TRUE(add("x", "x4", 25));
   EXPECT_EQ(evicted(), (Ids{"l2", "l3"}));
 }
 
-// A client that loses an entry held at least an equal share, counted before or after the eviction.
+// A client that loses an entry has at least an equal share of the store, before and after the eviction.
 TEST_F(FairSharesTest, NeverEvictsBelowEqualShare) {
   std::mt19937 random(1);
   std::map<std::string, std::map<std::string, std::size_t>> model;  // client, id
@@ -153,7 +153,7 @@ TEST_F(FairSharesTest, NeverEvictsBelowEqualShare) {
     for (const std::string& lost : evicted())
       for (auto& [loser, entries] : model)
         if (entries.count(lost) > 0) {
-          EXPECT_GE(held(loser), held(client)) << "who adds loses first";
+          EXPECT_GE(held(loser), held(client)) << "the adding client must lose entries first";
           EXPECT_GE(held(loser) * 5, kMost) << loser;
           entries.erase(lost);
           break;

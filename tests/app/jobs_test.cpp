@@ -20,7 +20,7 @@ using std::chrono::milliseconds, std::chrono::seconds;
 
 constexpr seconds kRunTime{100}, kRetention{50};
 
-// Renders tiny images of a ball. Calls `then` on the job's thread after each of them. Ends early after
+// Renders tiny images of a ball. Calls `then` on the thread of the job after each image. Is complete after
 // `enough` images.
 class FakeWork final : public JobWork {
  public:
@@ -93,7 +93,7 @@ class JobsTest : public testing::Test {
 
   ManualTimer timer_;
   WorkerPool pool_{1};
-  Admission admission_{{.running = 2, .queue_rays = 1e6}, timer_};
+  Admission admission_{{.running = 2, .max_queued_rays = 1e6}, timer_};
   std::stop_source drains_, ends_;
   ServiceCounters meters_;
   RayEstimator estimator_;
@@ -107,7 +107,7 @@ class JobsTest : public testing::Test {
       test::load(test::scene_of("{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'mirror'}",
                                 R"({'materials': {'mirror': {
                                   'type': 'reflective', 'n': [0.1, 0.1, 0.1], 'k': [4, 3, 2]}}})")));
-  std::optional<Jobs> jobs_;  // last: it uses the others
+  std::optional<Jobs> jobs_;  // last member, since it uses the others
 };
 
 TEST_F(JobsTest, FinishesWithinRunTime) {
@@ -124,7 +124,7 @@ TEST_F(JobsTest, FinishesEarlyWhenWorkIsComplete) {
   auto work = std::make_unique<FakeWork>(
       9, bytes_a_step_, [](int) {}, 4);
   const auto job = jobs().start({scene_, std::move(work), "a"}, "", "").job;
-  EXPECT_EQ(job->status().steps % 5, 4) << "9 at first, 4 in the end";
+  EXPECT_EQ(job->status().steps % 5, 4) << "9 before the work is complete, 4 after";
   const JobStatus status = end_of(job);
   EXPECT_EQ(status.state, JobState::done) << error_of(status);
   EXPECT_EQ(status.steps, 4);
@@ -169,7 +169,7 @@ TEST_F(JobsTest, ReportsRemainingTime) {
   EXPECT_FALSE(end_of(job).remaining_s);
 }
 
-// Rays that a budget spent on the first image alone do not enter the estimate for the rest.
+// The remaining time does not include rays that the budget spent only on the first image.
 TEST_F(JobsTest, ReportsRemainingTimeUnderBudget) {
   std::promise<JobPtr> started;
   std::promise<JobStatus> reported;
@@ -243,7 +243,7 @@ TEST_F(JobsTest, KeepsJobsOfOtherClientsUnderByteLimit) {
   EXPECT_TRUE(is_kept(other));
 }
 
-// A running job is also evicted if its client holds most and has no other jobs.
+// A running job is evicted if its client uses the most bytes and has no ended jobs.
 TEST_F(JobsTest, EvictsLargestRunningJob) {
   limits_.bytes = 60;
   std::promise<void> go;
@@ -271,9 +271,9 @@ TEST_F(JobsTest, UpdatesRayEstimateOfScene) {
   EXPECT_DOUBLE_EQ(estimator_.estimate(scene_->scene(), plan), expected + share * (traced - expected));
 }
 
-// The rate counts the rays traced, not the estimate.
+// The measured rate counts traced rays, not estimated ones.
 TEST_F(JobsTest, ReportsTracedRaysToAdmission) {
-  Admission admission({.running = 1, .queue_rays = 1}, timer_);
+  Admission admission({.running = 1, .max_queued_rays = 1}, timer_);
   const RenderServices services = services_with(admission);
   const Plan plan = make_plan(scene_->scene(), test::size(8, 8));
   {
@@ -290,7 +290,7 @@ TEST_F(JobsTest, ReportsTracedRaysToAdmission) {
   EXPECT_TRUE(test::eventually([&] { return admission.waiting() == 1; }));
   try {
     admission.enter({Priority::interactive, "a", 7 * rate}, {});
-    ADD_FAILURE() << "it has a turn";
+    ADD_FAILURE() << "admitted although the queue is full";
   } catch (const Busy& busy) {
     EXPECT_DOUBLE_EQ(busy.retry_after_s(), 7);
   }

@@ -10,13 +10,13 @@
 
 #include "tests/support/eventually.h"
 
-// Tests the log when nobody reads it.
+// Tests the log, in particular without a reader.
 namespace orrery {
 namespace {
 
 using nlohmann::json;
 
-// Pipe to write a log to.
+// Pipe for the output of a log. Reads do not block.
 class Pipe {
  public:
   Pipe() {
@@ -72,13 +72,13 @@ TEST(Log, FlushesQueueOnDestruction) {
 }
 
 TEST(Log, DropsAndCountsUnreadLines) {
-  constexpr int kLines = 10'000;  // 5 MB; a pipe takes 64 KiB, the queue 4,096 lines
+  constexpr int kLines = 10'000;  // 5 MB. The pipe holds 64 KiB, the queue 4,096 lines
   const Pipe pipe;
   {
     const Log log(LogForm::json, LogLevel::info, pipe.writer());
     write_many(log, kLines);
     EXPECT_TRUE(test::eventually([&] { return log.dropped() > kLines - 200; })) << log.dropped();
-  }  // ends although nobody reads
+  }  // the destructor returns although nothing is read
   const std::vector<json> lines = parse_lines(pipe.read_all());
   EXPECT_GT(lines.size(), 50U);
   EXPECT_LT(lines.size(), 200U);

@@ -27,7 +27,7 @@ class ManualTimer : public Timer {
     while (do_first(lock, now_)) continue;
   }
 
-  // Waits until an alarm is due by `time`. For tests of code that waits on other threads.
+  // Waits until an alarm is due by `time`. Use it if another thread sets the alarm.
   void await_alarm_by(Clock::time_point time) {
     std::unique_lock lock(mutex());
     changed_.wait(lock, [&] { return next_due() <= time; });

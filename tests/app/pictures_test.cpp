@@ -10,7 +10,7 @@
 #include "core/base/error.h"
 #include "server/app/watch.h"
 
-// Tests image sharing between requests, and the cache.
+// Tests the image cache, and requests that share one image.
 namespace orrery {
 namespace {
 
@@ -32,13 +32,13 @@ TEST(Pictures, CachesUntilSpaceIsNeeded) {
   EXPECT_EQ(get("a").value->bytes, std::string(3000, 'a'));
   EXPECT_EQ(made, 1);
   get("b");
-  get("c");  // three exceed 10,000 bytes with their statistics
+  get("c");  // three images and their statistics exceed 10,000 bytes
   EXPECT_LE(pictures.bytes(), 10'000U);
   EXPECT_EQ(made, 3);
   EXPECT_TRUE(get("a").made_here);
 }
 
-TEST(Pictures, KeepsPicturesOfOtherClientsDuringFlood) {
+TEST(Pictures, KeepsImagesOfOtherClientsDuringFlood) {
   Pictures pictures(50'000);
   const auto get = [&](const std::string& key, const std::string& client) {
     return pictures.get(key, {kNotCancelled, client},
@@ -51,14 +51,14 @@ TEST(Pictures, KeepsPicturesOfOtherClientsDuringFlood) {
   EXPECT_GT(pictures.evictions(), 80U);
 }
 
-TEST(Pictures, ReturnsPicturesTooLargeToCache) {
+TEST(Pictures, ReturnsImagesTooLargeToCache) {
   Pictures pictures(0);
   for (int i = 0; i < 2; ++i)
     EXPECT_TRUE(pictures.get("a", {kNotCancelled}, [](const auto&) { return picture("x"); }).made_here);
   EXPECT_EQ(pictures.bytes(), 0U);
 }
 
-TEST(Pictures, MakesConcurrentlyRequestedPictureOnce) {
+TEST(Pictures, RendersConcurrentlyRequestedImageOnce) {
   Pictures pictures(1 << 20);
   std::atomic<int> made{0}, here{0};
   std::vector<std::thread> threads;
@@ -77,12 +77,13 @@ TEST(Pictures, MakesConcurrentlyRequestedPictureOnce) {
   EXPECT_EQ(here, 1);
 }
 
-// Lets a second caller join the first while that one makes the image.
+// Runs two callers that request the same image. The second joins while the first makes the image.
 struct Pair {
   Pictures pictures{1 << 20};
   std::stop_source first_gone, second_gone;
 
-  // Calls `first` and `second` with a function that gets the image, and makes it by its argument.
+  // Calls each of `first` and `second` with a function get(make) that returns the image and calls `make` to
+  // produce it.
   template <class First, class Second>
   void run(const First& first, const Second& second) {
     std::promise<void> making, joined;
@@ -122,7 +123,7 @@ TEST(Pictures, FinishesForOtherClientsWhenFirstDisconnects) {
       });
 }
 
-TEST(Pictures, CancelsWhenAllRequestersLeave) {
+TEST(Pictures, CancelsWhenAllRequestersDisconnect) {
   Pair pair;
   pair.run(
       [&](const auto& get) {

@@ -10,7 +10,7 @@
 #include "server/http/limit_exceeded.h"
 #include "tests/support/pictures.h"
 
-// Tests memory accounting of frames: charged to the client from encoding until destruction.
+// Tests memory accounting of frames, which are charged to the client from encoding until destruction.
 namespace orrery {
 namespace {
 

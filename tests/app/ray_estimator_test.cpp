@@ -6,7 +6,7 @@
 #include "core/plan/plan.h"
 #include "tests/support/pictures.h"
 
-// Tests ray estimates that learn from earlier renders of the same scene.
+// Tests estimates of ray counts, which learn from earlier renders of the same scene.
 namespace orrery {
 namespace {
 
@@ -65,8 +65,8 @@ TEST(RayEstimator, MovesHalfwayToEachObservation) {
   EXPECT_NEAR(after(0.5), 1, 1e-3);
 }
 
-// Clients can feed any sample to the estimator. A tiny image has little weight, and no image changes the
-// estimate by more than a factor of 8.
+// Limits the influence of a single client. A tiny image has little weight, and no image changes the estimate
+// by more than a factor of 8.
 TEST(RayEstimator, LimitsInfluenceOfObservations) {
   const auto scene = load(sample("paper"));
   const Plan plan = make_plan(*scene, size(64, 64)), tiny = make_plan(*scene, size(1, 1));
@@ -99,7 +99,7 @@ TEST(RayEstimator, LearnsPerSceneAndSettings) {
   EXPECT_TRUE(is_unknown(scene, simple));
   EXPECT_TRUE(is_unknown(scene, coarse));
   estimator.learn(*scene, make_plan(*scene, simple), 1);
-  RenderRequest flat = large();  // as deep as the simple one
+  RenderRequest flat = large();  // same depth as `simple`, other technique
   flat.max_depth = 0;
   EXPECT_TRUE(is_unknown(scene, flat));
 }

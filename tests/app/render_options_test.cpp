@@ -11,8 +11,8 @@
 namespace orrery::test {
 namespace {
 
-// Returns a scene in which every option shows. Facing mirrors show depth and ray weight, edges show samples
-// and seed, and a ball moves. A matt ball stands in front of a matt wall.
+// Returns a scene in which every option changes the image. Facing mirrors reveal depth and ray weight, edges
+// reveal samples and seed, and one ball moves. A matt ball is in front of a matt wall.
 Json revealing_scene() {
   return scene_of(R"([
       {'type': 'plane', 'point': [0, -1, 0], 'normal': [0, 1, 0], 'material': 'mirror'},
@@ -35,7 +35,7 @@ Json revealing_scene() {
       'instances': [{'model': 'ball', 'motion': [{'time': 0}, {'time': 2, 'translate': [1, 0, 0]}]}]})");
 }
 
-// Requests for other values of the option than `own`: one for a number, all others for a choice.
+// Requests with values of the option other than `own`: one for a number, all others for a choice.
 struct OtherValues {
   const RenderSettings& own;
 
@@ -77,7 +77,7 @@ struct OtherValues {
   }
 };
 
-// Renders to EXR, which stores the whole film.
+// Renders to EXR, which stores the pixels without loss.
 std::string file_of(const std::shared_ptr<const Scene>& scene, const RenderRequest& request) {
   const PreparedScene prepared(scene);
   const SettledPlan plan = settle(prepared, make_plan(*scene, request));
@@ -85,16 +85,16 @@ std::string file_of(const std::shared_ptr<const Scene>& scene, const RenderReque
   return encode_film(render_frame(prepared, plan, storage, shared_pool()).film, FileFormat::exr);
 }
 
-// The key of an image contains an option exactly if its table row has `changes_pixels`, and the pixels
-// confirm that.
-TEST(RenderOptions, ChangesKeyExactlyIfPixelsChange) {
+// The cache key of an image contains an option if and only if its table row has `changes_pixels`. The
+// rendered pixels confirm the row.
+TEST(RenderOptions, ChangesKeyIfAndOnlyIfPixelsChange) {
   const auto scene = load(revealing_scene());
   const RenderSettings own = resolve(*scene, {});
   RenderRequest paths;
   paths.technique = "path";
   const std::string plain = file_of(scene, {}), plain_paths = file_of(scene, paths);
   for (const RenderOption& option : render_options()) {
-    if (option.key == "error_metric") continue;  // see below
+    if (option.key == "error_metric") continue;  // tested separately below
     const std::vector<RenderRequest> others = std::visit(OtherValues{own}, option.kind);
     ASSERT_FALSE(others.empty()) << option.key;
     bool changed = false;
@@ -110,7 +110,7 @@ TEST(RenderOptions, ChangesKeyExactlyIfPixelsChange) {
       changed = changed || !same;
       EXPECT_TRUE(same || option.changes_pixels);
     }
-    EXPECT_EQ(changed, option.changes_pixels) << option.key << ": no other value shows in this scene";
+    EXPECT_EQ(changed, option.changes_pixels) << option.key << ": no value changes this scene";
   }
 }
 

@@ -32,7 +32,7 @@ Document balls(const std::string& title, int count) {
   return parse_document(text_of(title, objects));
 }
 
-// Source of one triangle that counts its reads.
+// Asset source that returns one triangle and counts the reads.
 class CountedMeshes final : public AssetSource {
  public:
   TriangleMesh mesh_asset(const std::string&) const override {
@@ -82,10 +82,10 @@ TEST(SceneStore, ReusesKnownScenesWithoutReadingMeshes) {
   EXPECT_EQ(store->hits(), 0u);
   EXPECT_EQ(meshes.reads, 1);
   const auto again = store.get(parse_document("\n " + text_of("mesh", " " + mesh)), meshes);
-  EXPECT_EQ(again, rendered) << "what was built for it is used again";
+  EXPECT_EQ(again, rendered) << "the prepared scene is reused";
   const SceneStore::KeepResult kept = store.keep(parse_document(text_of("mesh", mesh)), meshes);
   EXPECT_EQ(kept.scene, rendered);
-  EXPECT_FALSE(kept.known) << "it was rendered, not kept";
+  EXPECT_FALSE(kept.known) << "the scene was cached, not kept";
   EXPECT_TRUE(store.keep(parse_document(text_of("mesh", mesh)), meshes).known);
   EXPECT_EQ(store.get(parse_document(text_of("mesh", mesh)), meshes), rendered);
   EXPECT_EQ(store->loads(), 1u);
@@ -103,7 +103,7 @@ TEST(SceneStore, NeverEvictsKeptScenesForCachedOnes) {
   EXPECT_FALSE(store.has(ball("aaaa")));
   EXPECT_TRUE(store.has(ball("bbbb")) && store.has(ball("cccc")));
   for (int i = 0; i < 10; ++i) store.get(ball(std::to_string(1000 + i)));
-  EXPECT_TRUE(store.has(ball("kept"))) << "although it was not used for longest";
+  EXPECT_TRUE(store.has(ball("kept"))) << "although it is the least recently used";
   EXPECT_LE(store->bytes(), 3 * size_of(ball("kept")) + 100);
 }
 
@@ -121,11 +121,11 @@ TEST(SceneStore, EvictsCachedScenesBeforeKeptOnes) {
   store.keep(ball("old1"));
   store.get(ball("cach"));
   store.keep(ball("old2"));
-  store.get(ball("cach"));  // used last, but evicted first
+  store.get(ball("cach"));  // most recently used, but evicted first
   store.keep(ball("new1"));
   EXPECT_FALSE(store.has(ball("cach")));
   EXPECT_TRUE(store.has(ball("old2")) && store.has(ball("new1")) && store.has(ball("old1")));
-  store.keep(ball("new2"));  // now the least recently used
+  store.keep(ball("new2"));  // evicts the least recently used kept scene
   EXPECT_FALSE(store.has(ball("old2")));
   EXPECT_TRUE(store.has(ball("new1")) && store.has(ball("new2")) && store.has(ball("old1")));
 }
@@ -137,7 +137,7 @@ TEST(SceneStore, RejectsOversizedScene) {
     store.keep(large);
     ADD_FAILURE() << "kept";
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("store_bytes"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("scene_cache_bytes"), std::string::npos) << error.what();
   }
   EXPECT_EQ(store.get(large)->scene().object_count, 100);
   EXPECT_EQ(store->bytes(), 0u);
@@ -177,8 +177,8 @@ TEST(SceneStore, KeepsScenesOfOtherClientsDuringFlood) {
   for (int i = 0; i < 50; ++i) store->keep(ball(std::to_string(1000 + i)), kNoMeshes, "flood");
   for (int i = 0; i < 50; ++i) store->get(ball(std::to_string(2000 + i)), kNoMeshes, "flood");
   EXPECT_TRUE(store.has(ball("kept")) && store.has(ball("cach")));
-  EXPECT_TRUE(store.has(ball("1049")) && store.has(ball("1048"))) << "it keeps what it kept last";
-  EXPECT_FALSE(store.has(ball("2049"))) << "and its cached scenes take nothing from kept ones";
+  EXPECT_TRUE(store.has(ball("1049")) && store.has(ball("1048"))) << "its latest kept scenes remain";
+  EXPECT_FALSE(store.has(ball("2049"))) << "cached scenes evict no kept ones";
 }
 
 TEST(SceneStore, RejectsSceneIfOthersFillStore) {
@@ -190,7 +190,7 @@ TEST(SceneStore, RejectsSceneIfOthersFillStore) {
     store->keep(large, kNoMeshes, "b");
     ADD_FAILURE() << "kept";
   } catch (const LimitExceeded& error) {
-    EXPECT_STREQ(error.limit(), "store_bytes");
+    EXPECT_STREQ(error.limit(), "scene_cache_bytes");
   }
   EXPECT_TRUE(store.has(ball("kept")));
   EXPECT_EQ(store->bytes(), small);
@@ -208,7 +208,8 @@ TEST(SceneStore, RejectsRemovalByOtherClients) {
   EXPECT_FALSE(store.has(scene));
 }
 
-// Structures that another client builds for a kept scene may be evicted, but no scene of its keeper.
+// Structures that another client builds for a kept scene may be evicted. The scenes of the keeping client
+// must not be.
 TEST(SceneStore, NeverEvictsKeptScenesForBuiltStructures) {
   const std::size_t bare = size_of(balls("kept", 2000));
   Store store(3 * bare);
@@ -242,8 +243,8 @@ TEST(SceneStore, EvictsOversizedBuiltStructures) {
   }
   EXPECT_GT(scene->bytes(), 2 * bare);
   EXPECT_EQ(store->bytes(), bare);
-  EXPECT_NE(store.scenes.find(scene->scene().id), scene) << "a fresh one";
-  EXPECT_GT(store.work.bytes(), bare) << "as long as it is used";
+  EXPECT_NE(store.scenes.find(scene->scene().id), scene) << "a new object without structures";
+  EXPECT_GT(store.work.bytes(), bare) << "charged while the old object is used";
 }
 
 TEST(SceneStore, ChargesBuiltStructuresToStore) {
@@ -256,7 +257,7 @@ TEST(SceneStore, ChargesBuiltStructuresToStore) {
     store.work.open("builder")->run(
         {}, [&] { world_for<float>(some->parts(), accelerator_types()[0], 0, build_ms); });
   }
-  EXPECT_EQ(store.work.bytes(), 0u) << "the store answers for it";
+  EXPECT_EQ(store.work.bytes(), 0u) << "the store is charged instead";
   EXPECT_EQ(store->bytes(), scene->bytes() + other->bytes());
 }
 

@@ -11,7 +11,7 @@
 #include "tests/app/manual_timer.h"
 #include "tests/app/waiters.h"
 
-// Tests work shared by several clients.
+// Tests admission of work that several clients share.
 namespace orrery {
 namespace {
 
@@ -23,7 +23,7 @@ using test::Waiters;
 
 class SharedWork : public testing::Test {
  protected:
-  // Queues work of client a, and the shared work last.
+  // Queues three requests of client a, one of c, and then the shared work.
   void ask() {
     for (const char* name : {"a1", "a2", "a3"}) waiters_.add(name, demand("a"));
     waiters_.add("c", demand("c", 15));
@@ -36,7 +36,7 @@ class SharedWork : public testing::Test {
   }
 
   ManualTimer timer_;
-  Admission admission_{{.running = 1, .queue_rays = 1000}, timer_};
+  Admission admission_{{.running = 1, .max_queued_rays = 1000}, timer_};
   const std::shared_ptr<Subscribers> subscribers_ = std::make_shared<Subscribers>();
   std::optional<Admission::Ticket> ticket_{admission_.enter(demand("z"), kNever)};
   Waiters waiters_{admission_};
@@ -46,14 +46,15 @@ class SharedWork : public testing::Test {
 TEST_F(SharedWork, BelongsToFirstClientWithoutSubscribers) {
   ask();
   { const Admission::Subscription sharing(admission_, subscribers_, "b"); }
-  EXPECT_EQ(order(), (TurnOrder{"a1", "c", "a2", "a3", "shared"}));  // finish at 10 15 20 30 40
+  EXPECT_EQ(order(), (TurnOrder{"a1", "c", "a2", "a3", "shared"}));  // virtual finish times: 10 15 20 30 40
 }
 
 TEST_F(SharedWork, StartsEarliestAndChargesEachSubscriber) {
   ask();
   const Admission::Subscription sharing(admission_, subscribers_, "b");
   waiters_.add("b", demand("b"));
-  EXPECT_EQ(order(), (TurnOrder{"a1", "shared", "c", "a2", "b", "a3"}));  // finish at 10 10 15 20 20 30
+  // Virtual finish times: 10 10 15 20 20 30.
+  EXPECT_EQ(order(), (TurnOrder{"a1", "shared", "c", "a2", "b", "a3"}));
 }
 
 TEST_F(SharedWork, AcceptsSubscribersBeforeQueueing) {
@@ -67,7 +68,7 @@ TEST_F(SharedWork, AcceptsSubscribersBeforeQueueing) {
 TEST_F(SharedWork, StartsUnlessAllSubscribersAreDelayed) {
   ticket_.reset();
   std::list<Admission::Ticket> own;
-  for (int i = 0; i < 2; ++i) {  // two for each slot
+  for (int i = 0; i < 2; ++i) {  // two preemptions per slot delay the client
     own.push_back(admission_.enter(demand("a"), kNever));
     timer_.advance(50ms);
     const auto other = admission_.enter(demand("c"), kNever);
@@ -96,10 +97,10 @@ TEST_F(SharedWork, DropsDepartedFirstClient) {
   const Admission::Subscription second(admission_, subscribers_, "b");
   first.reset();
   waiters_.add("a", demand("a", 5));
-  EXPECT_EQ(order(), (TurnOrder{"a", "shared"}));  // finish at 5 10, not at 15 10
+  EXPECT_EQ(order(), (TurnOrder{"a", "shared"}));  // virtual finish times: 5 10, not 15 10
 }
 
-// Shared work that keeps running in a slot that another client waits for.
+// Shared work that keeps its slot while another client waits for it.
 class RunningSharedWork : public SharedWork {
  protected:
   RunningSharedWork() {
@@ -112,7 +113,7 @@ class RunningSharedWork : public SharedWork {
     waiters_.join();
     timer_.advance(200ms);
   }
-  // Returns the order of admission once the work has ended.
+  // Ends the running work and returns the order in which `clients` are admitted.
   TurnOrder order_of(const std::vector<const char*>& clients) {
     ticket_.reset();
     ticket_.emplace(admission_.enter(demand("y"), kNever));
@@ -149,7 +150,7 @@ TEST_F(RunningSharedWork, YieldsSlotToDepartedSubscriber) {
   std::optional<Admission::Subscription> second(std::in_place, admission_, subscribers_, "b");
   waiters_.add("b", demand("b"));
   timer_.advance(100ms);
-  EXPECT_FALSE(ticket_->expired());  // it is work of b, too
+  EXPECT_FALSE(ticket_->expired());  // b also subscribes to the running work
   second.reset();
   EXPECT_TRUE(ticket_->expired());
   waiters_.join();
@@ -163,11 +164,11 @@ TEST_F(SharedWork, PreemptsSlotOfSingleSubscriber) {
   waiters_.join();
 }
 
-TEST_F(SharedWork, CountsPreemptionAgainstDepartedStarter) {
+TEST_F(SharedWork, CountsPreemptionAgainstDepartedFirstClient) {
   ticket_.reset();
   const Admission::Subscription stays(admission_, subscribers_, "b");
   std::list<Admission::Ticket> lost;
-  for (int i = 0; i < 2; ++i) {  // two for each slot
+  for (int i = 0; i < 2; ++i) {  // two preemptions per slot delay the client
     const Admission::Subscription leaves(admission_, subscribers_, "a");
     lost.push_back(admission_.enter({Priority::interactive, "a", 10, subscribers_}, kNever));
     timer_.advance(50ms);
@@ -179,8 +180,8 @@ TEST_F(SharedWork, CountsPreemptionAgainstDepartedStarter) {
   waiters_.join();
 }
 
-// Two clients request one image, and the first has much work queued before it.
-TEST_F(SharedWork, AdmitsSharedPictureEarliest) {
+// Two clients request the same image. The first has much other work queued before it.
+TEST_F(SharedWork, AdmitsSharedImageEarliest) {
   for (const char* name : {"a1", "a2"}) waiters_.add(name, demand("a"));
   waiters_.add("c", demand("c", 15));
   SubscribersByKey by_key;

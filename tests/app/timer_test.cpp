@@ -8,7 +8,7 @@
 
 #include "tests/app/manual_timer.h"
 
-// Tests alarms and their order.
+// Tests that alarms fire on time and in order.
 namespace orrery {
 namespace {
 

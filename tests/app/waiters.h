@@ -17,13 +17,13 @@ using TurnOrder = std::vector<std::string>;
 
 inline const std::stop_token kNever;
 
-// Clients that wait for admission, each on a thread, and the order in which they were admitted.
+// Requests that wait for admission, each on its own thread. Records the order of admission.
 class Waiters {
  public:
   explicit Waiters(Admission& admission) : admission_(admission) {}
   ~Waiters() { join(); }
 
-  // Returns once `name` waits, or was rejected.
+  // Starts a request and returns once it waits, is admitted or is rejected.
   void add(const std::string& name, const SlotRequest& demand) {
     const auto settled = [&] { return admission_.waiting() + order().size(); };
     const auto before = settled();

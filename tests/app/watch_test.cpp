@@ -4,7 +4,7 @@
 
 #include "tests/app/manual_timer.h"
 
-// Tests the early end of work and its reason.
+// Tests cancellation of work and the reported cause.
 namespace orrery {
 namespace {
 
@@ -51,7 +51,7 @@ TEST(WorkCancellation, StopsAtDeadlineCountedFromRequest) {
     watch.explain();
   } catch (const TimedOut& error) {
     EXPECT_STREQ(error.what(),
-                 "request took more than 60 s (limit 60 s, request_seconds); use fewer pixels or samples");
+                 "request took too long (limit 60 s, request_seconds); use fewer pixels or samples");
   }
 }
 

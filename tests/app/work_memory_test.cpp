@@ -27,7 +27,7 @@ TEST(MemoryAccount, ChargesScopedAllocationsUntilFreed) {
   EXPECT_GE(account->bytes(), 10 * kMega);
   EXPECT_LE(account->bytes(), 10 * kMega + 100);
   EXPECT_GE(memory.bytes(), 10 * kMega);
-  const std::vector<char> others = block(5 * kMega);  // outside of its scope
+  const std::vector<char> others = block(5 * kMega);  // allocated outside of the account's scope
   EXPECT_LE(account->bytes(), 10 * kMega + 100);
   std::thread([&] { std::vector<char>().swap(kept); }).join();
   EXPECT_EQ(account->bytes(), 0u);
@@ -79,19 +79,19 @@ TEST(MemoryAccount, ChargesAllocationsOfWorkersAndImages) {
   });
   EXPECT_GE(account->bytes(), 16 * kMega);
   blocks.clear();
-  EXPECT_LT(account->bytes(), 4096u);  // the pool may keep a few
+  EXPECT_LT(account->bytes(), 4096u);  // the pool may keep a few bytes
   const Image image = account->run({}, [] { return Image(1024, 1024, PixelFormat::linear32); });
   EXPECT_GE(account->bytes(), 12 * kMega);
 }
 
-TEST(MemoryAccount, ReleasesShareDespiteLiveAllocations) {
+TEST(MemoryAccount, ReleasesMemoryDespiteLiveAllocations) {
   WorkMemory memory(100 * kMega);
   std::vector<char> kept = memory.open("a")->run({}, [] { return block(10 * kMega); });
   EXPECT_EQ(memory.bytes(), 0u);
   std::vector<char>().swap(kept);
 }
 
-TEST(MemoryAccount, ReleasesShareOfSettledBytes) {
+TEST(MemoryAccount, ReleasesSettledBytes) {
   WorkMemory memory(100 * kMega);
   const auto account = memory.open("a");
   const std::vector<char> kept = account->run({}, [] { return block(10 * kMega); });
@@ -104,7 +104,7 @@ TEST(MemoryAccount, ReleasesShareOfSettledBytes) {
   EXPECT_GE(memory.bytes(), 30 * kMega);
 }
 
-// Small allocations never fail, but the work ends at its next interruption point.
+// Small allocations never fail. Work above the limit ends at its next interruption point.
 TEST(MemoryAccount, InterruptsWorkOfManySmallBlocks) {
   WorkMemory memory(2 * kMega);
   const auto account = memory.open("a");
@@ -120,7 +120,7 @@ TEST(MemoryAccount, InterruptsWorkOfManySmallBlocks) {
   EXPECT_LT(account->bytes(), kMega + 100'000);
   blocks.clear();
   blocks.shrink_to_fit();
-  account->run({}, [] { interruption_point(); });  // there is room again
+  account->run({}, [] { interruption_point(); });  // the account is below its limit again
 }
 
 TEST(InterruptionPoint, ThrowsOnceStopIsRequested) {

@@ -1,11 +1,11 @@
-// Cost of an error budget, compared with the cheapest settings of a full grid that meet the error. Costs are
-// in rays, which do not depend on the machine. Errors are in display values.
+// Compares the cost of an error budget with the cheapest settings of a grid that meet the error. Costs are in
+// rays, which do not depend on the machine. Errors are in display values.
 
 import { spawnSync } from "node:child_process";
-import { kOrrery } from "./command.mjs";
-import { median, show_progress } from "./measure.mjs";
+import { ORRERY } from "./command.mjs";
+import { median, showProgress } from "./measure.mjs";
 
-const kScenes = [
+const SCENES = [
   "paper",
   "glass",
   "mirrors",
@@ -17,27 +17,28 @@ const kScenes = [
   "cornell-box",
   "technique-distributed",
 ];
-const kErrors = [0.1, 0.07, 0.05, 0.035, 0.025, 0.018],
-  kSize = 160;
-const kSamples = [2, 4, 6, 8, 10, 12, 16, 20, 24, 32, 48, 64, 96, 128];
-const kContributions = [0.04, 0.01, 0.0025, 6e-4, 4e-5]; // minimum contributions of rays, for ray trees
+const ERRORS = [0.1, 0.07, 0.05, 0.035, 0.025, 0.018],
+  SIZE = 160;
+const SAMPLES = [2, 4, 6, 8, 10, 12, 16, 20, 24, 32, 48, 64, 96, 128];
+const CONTRIBUTIONS = [0.04, 0.01, 0.0025, 6e-4, 4e-5]; // minimum contributions of rays, for ray trees
 
 function render(scene, size, options) {
   const words = Object.entries({ width: size, height: size, ...options }).flatMap(([name, value]) => [
     `--${name}`,
     String(value),
   ]);
-  const done = spawnSync(kOrrery, ["render", `scenes/${scene}.json`, "--stats=json", ...words], { encoding: "utf8" });
+  const done = spawnSync(ORRERY, ["render", `scenes/${scene}.json`, "--stats=json", ...words], { encoding: "utf8" });
   if (done.status !== 0) throw new Error(`${scene}: ${done.stderr.trim()}`);
   return JSON.parse(done.stdout);
 }
 
-// Returns {rays, bound} of all settings, up to the first sample count that meets the smallest error.
-function grid_of(scene, size) {
-  const is_tree = render(scene, 32, {}).technique === "whitted",
+// Returns {rays, bound} of each setting of the grid, up to the first sample count that meets the smallest
+// error.
+function gridOf(scene, size) {
+  const isTree = render(scene, 32, {}).technique === "whitted",
     cells = [];
-  for (const samples of kSamples) {
-    for (const contribution of is_tree ? kContributions : [0]) {
+  for (const samples of SAMPLES) {
+    for (const contribution of isTree ? CONTRIBUTIONS : [0]) {
       const { rays, certificate } = render(scene, size, {
         samples,
         space: "display",
@@ -47,24 +48,24 @@ function grid_of(scene, size) {
       });
       cells.push({ rays: rays.total, bound: certificate.total.rms ?? Infinity });
     }
-    if (cells.some(({ bound }) => bound <= kErrors.at(-1))) break;
+    if (cells.some(({ bound }) => bound <= ERRORS.at(-1))) break;
   }
   return cells;
 }
 
 const line = (values) => values.map((v, i) => (i === 0 ? v.padEnd(24) : String(v).padStart(12))).join("");
 
-export const kBudgets = {
+export const BUDGETS = {
   name: "budgets",
-  what: "cost of an error budget, relative to the cheapest settings that keep it",
-  needs: [kOrrery],
-  run({ size = kSize }) {
+  what: "cost of an error budget relative to the cheapest settings that meet the error",
+  needs: [ORRERY],
+  run({ size = SIZE }) {
     const ratios = [];
-    console.log(line(["scene", "asked", "met", "rays", "least rays", "ratio"]));
-    for (const scene of kScenes) {
-      show_progress(`budgets: ${scene}`);
-      const cells = grid_of(scene, size);
-      for (const error of kErrors) {
+    console.log(line(["scene", "error", "met", "rays", "min rays", "ratio"]));
+    for (const scene of SCENES) {
+      showProgress(`budgets: ${scene}`);
+      const cells = gridOf(scene, size);
+      for (const error of ERRORS) {
         const { rays, budget } = render(scene, size, { error });
         const least = Math.min(...cells.filter(({ bound }) => bound <= error).map((cell) => cell.rays));
         const ratio = budget.met && isFinite(least) ? rays.total / least : null;
@@ -74,10 +75,10 @@ export const kBudgets = {
         );
       }
     }
-    show_progress("");
+    showProgress("");
     console.log(
-      `${ratios.length} of ${kScenes.length * kErrors.length} met: median ${median(ratios).toFixed(2)}, ` +
-        `most ${Math.max(...ratios).toFixed(2)}`,
+      `${ratios.length} of ${SCENES.length * ERRORS.length} met: median ${median(ratios).toFixed(2)}, ` +
+        `max ${Math.max(...ratios).toFixed(2)}`,
     );
     return [];
   },

@@ -1,8 +1,8 @@
 // SVG charts: panels with scatter and line plots.
 
-const kPanel = { width: 300, height: 250 },
-  kMargin = { left: 52, right: 14, top: 34, bottom: 42 };
-const kColors = ["#0b6e99", "#d9730d", "#0f7b6c", "#ad1a72", "#6940a5", "#8a6d1d"];
+const PANEL = { width: 300, height: 250 },
+  MARGIN = { left: 52, right: 14, top: 34, bottom: 42 };
+const COLORS = ["#0b6e99", "#d9730d", "#0f7b6c", "#ad1a72", "#6940a5", "#8a6d1d"];
 
 const escape = (text) => String(text).replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/"/g, "&quot;");
 const round = (x) => Math.round(x * 100) / 100;
@@ -15,23 +15,23 @@ function text(x, y, words, { size = 11, anchor = "middle", color = "#333", weigh
   );
 }
 
-// Returns the mark of series i: a dot, or a square once all colours are used.
+// Returns the mark of series i: a dot, or a square if there are more series than colours.
 function mark(i, x, y, title) {
-  const color = kColors[i % kColors.length],
+  const color = COLORS[i % COLORS.length],
     inside = title ? `<title>${escape(title)}</title>` : "";
-  if (i < kColors.length) return `<circle cx="${x}" cy="${y}" r="4.5" fill="${color}">${inside}</circle>`;
+  if (i < COLORS.length) return `<circle cx="${x}" cy="${y}" r="4.5" fill="${color}">${inside}</circle>`;
   return `<rect x="${round(x - 4.5)}" y="${round(y - 4.5)}" width="9" height="9" fill="${color}">${inside}</rect>`;
 }
 
-// Returns a logarithmic axis between the powers of ten around the values.
-function log_axis(values, from, to) {
+// Returns a logarithmic axis between the powers of ten that enclose the values.
+function logAxis(values, from, to) {
   const lo = Math.floor(Math.log10(Math.min(...values)) - 1e-9),
     hi = Math.ceil(Math.log10(Math.max(...values)) + 1e-9);
   const at = (value) => from + ((Math.log10(value) - lo) / (hi - lo)) * (to - from);
   const ticks = Array.from({ length: hi - lo + 1 }, (_, i) => 10 ** (lo + i));
   return { at, ticks };
 }
-function linear_axis(values, from, to) {
+function linearAxis(values, from, to) {
   const most = Math.max(...values),
     step = 10 ** Math.floor(Math.log10(most));
   const tick = [0.2, 0.5, 1, 2].map((f) => f * step).find((t) => most / t <= 6) ?? 2 * step;
@@ -40,27 +40,27 @@ function linear_axis(values, from, to) {
   return { at, ticks: Array.from({ length: Math.round(top / tick) + 1 }, (_, i) => i * tick) };
 }
 
-const tick_name = (value) => {
+const tickName = (value) => {
   if (value >= 1e4 || (value > 0 && value < 1e-3)) return `1e${Math.round(Math.log10(value))}`;
   return String(Number(value.toPrecision(3)));
 };
 
-// Draws a panel: {title, x, y (axis names), series: [{name, points: [{x, y, label?, ring?}], line?}],
-// y_axis: "log" or "linear"}.
-function panel({ title, x, y, series, y_axis = "log" }, left, top) {
+// Draws a panel of {title, x, y, series, yAxis}. `x` and `y` are axis names, `yAxis` is "log" or "linear". A
+// series is {name, points: [{x, y, label?, ring?}], line?}.
+function panel({ title, x, y, series, yAxis = "log" }, left, top) {
   const inner = {
-    x0: left + kMargin.left,
-    x1: left + kPanel.width - kMargin.right,
-    y0: top + kPanel.height - kMargin.bottom,
-    y1: top + kMargin.top,
+    x0: left + MARGIN.left,
+    x1: left + PANEL.width - MARGIN.right,
+    y0: top + PANEL.height - MARGIN.bottom,
+    y1: top + MARGIN.top,
   };
   const points = series.flatMap((s) => s.points);
-  const across = log_axis(
+  const across = logAxis(
     points.map((p) => p.x),
     inner.x0,
     inner.x1,
   );
-  const up = (y_axis === "log" ? log_axis : linear_axis)(
+  const up = (yAxis === "log" ? logAxis : linearAxis)(
     points.map((p) => p.y),
     inner.y0,
     inner.y1,
@@ -69,21 +69,21 @@ function panel({ title, x, y, series, y_axis = "log" }, left, top) {
   for (const tick of across.ticks) {
     const at = round(across.at(tick));
     parts.push(`<line x1="${at}" y1="${inner.y0}" x2="${at}" y2="${inner.y1}" stroke="#e4e4e4"/>`);
-    parts.push(text(at, inner.y0 + 15, tick_name(tick), { size: 10, color: "#666" }));
+    parts.push(text(at, inner.y0 + 15, tickName(tick), { size: 10, color: "#666" }));
   }
   for (const tick of up.ticks) {
     const at = round(up.at(tick));
     parts.push(`<line x1="${inner.x0}" y1="${at}" x2="${inner.x1}" y2="${at}" stroke="#e4e4e4"/>`);
-    parts.push(text(inner.x0 - 6, at + 3, tick_name(tick), { size: 10, color: "#666", anchor: "end" }));
+    parts.push(text(inner.x0 - 6, at + 3, tickName(tick), { size: 10, color: "#666", anchor: "end" }));
   }
   parts.push(text((inner.x0 + inner.x1) / 2, inner.y0 + 32, x, { color: "#555" }));
   parts.push(text(left + 14, (inner.y0 + inner.y1) / 2, y, { color: "#555", turn: -90 }));
-  series.forEach((one, i) => parts.push(...draw_series(one, i, across, up)));
+  series.forEach((one, i) => parts.push(...drawSeries(one, i, across, up)));
   return parts;
 }
 
-function draw_series({ points, line }, i, across, up) {
-  const color = kColors[i % kColors.length],
+function drawSeries({ points, line }, i, across, up) {
+  const color = COLORS[i % COLORS.length],
     parts = [];
   const place = (p) => [round(across.at(p.x)), round(up.at(p.y))];
   if (line) {
@@ -98,21 +98,21 @@ function draw_series({ points, line }, i, across, up) {
   return parts;
 }
 
-// Returns a chart: panels in rows of `columns`, and a legend of `names` in the colours of the series.
+// Returns a chart of panels in rows of `columns`, with a legend of `names` in the colours of the series.
 export function chart({ title, note, panels, columns, names }) {
   const rows = Math.ceil(panels.length / columns),
-    wide = columns * kPanel.width;
-  const legend_rows = Math.ceil(names.length / Math.max(1, Math.floor(wide / 140)));
+    wide = columns * PANEL.width;
+  const legendRows = Math.ceil(names.length / Math.max(1, Math.floor(wide / 140)));
   const top = 46,
-    height = top + rows * kPanel.height + 24 * legend_rows + 34;
+    height = top + rows * PANEL.height + 24 * legendRows + 34;
   const parts = [text(wide / 2, 26, title, { size: 17, weight: "bold" })];
   panels.forEach((one, i) => {
-    parts.push(...panel(one, (i % columns) * kPanel.width, top + Math.floor(i / columns) * kPanel.height));
+    parts.push(...panel(one, (i % columns) * PANEL.width, top + Math.floor(i / columns) * PANEL.height));
   });
-  const a_row = Math.ceil(names.length / legend_rows);
+  const aRow = Math.ceil(names.length / legendRows);
   names.forEach((name, i) => {
-    const x = ((i % a_row) + 0.5) * (wide / a_row) - 50;
-    const y = top + rows * kPanel.height + 16 + 24 * Math.floor(i / a_row);
+    const x = ((i % aRow) + 0.5) * (wide / aRow) - 50;
+    const y = top + rows * PANEL.height + 16 + 24 * Math.floor(i / aRow);
     parts.push(mark(i, round(x), y));
     parts.push(text(x + 10, y + 4, name, { anchor: "start" }));
   });

@@ -1,8 +1,8 @@
-# Renders one of our scenes with Blender's Cycles: `blender -b --factory-startup -P FILE -- SCENE`. Supports
-# meshes, parallelograms, environment pictures, Lambert surfaces, emitters, smooth glass, and metal that
-# reflects all light. Each input line is an order in JSON: samples, seed, bounces, size in pixels, threads,
-# preset ("fair" or "defaults") and out, a file that ends with .exr. The reply is a line "rendered SECONDS":
-# CPU time of all threads, scene conversion and writing included.
+# Renders one of orrery's scenes with Blender's Cycles: `blender -b --factory-startup -P FILE -- SCENE`.
+# Supports meshes, parallelograms, environment images, Lambert surfaces, emitters, smooth glass, and metal
+# that reflects all light. Each input line is a JSON object with samples, seed, bounces, size in pixels,
+# threads, preset ("fair" or "defaults") and out, a file that ends with .exr. The reply is a line "rendered
+# SECONDS" with the CPU time of all threads, including scene conversion and writing.
 
 import json
 import math
@@ -89,8 +89,8 @@ def convert(record, folder):
     return scene
 
 
-# Adds an environment. Cycles has the middle of the picture toward +x and its top toward +z, orrery toward -z
-# and +y.
+# Adds an environment. The middle of the image is toward +x in Cycles and toward -z in orrery. Its top is
+# toward +z in Cycles and toward +y in orrery.
 def surround(tree, record, folder):
     nodes, links = tree.nodes, tree.links
     picture = nodes.new("ShaderNodeTexEnvironment")
@@ -105,11 +105,11 @@ def surround(tree, record, folder):
 
 
 # Sets the options of a preset. "fair" is unbiased: no clamping, no light threshold, no adaptive sampling. Its
-# first sample is number N of N: Cycles sends sample 0 of every pixel through the centre instead of sampling
-# the filter. Such a sample would be an error of 1/N of the edges in each picture, the same for every seed.
-# Samples N to 2N - 1 are as well stratified. Preset "defaults" has Blender's values of these five options. A
-# `threshold` turns on adaptive sampling in both presets. Neither preset denoises. Both use our pixel filter
-# and path length.
+# samples are numbered N to 2N - 1, because Cycles traces sample 0 of every pixel through the centre instead
+# of sampling the filter. Sample 0 would cause an error of 1/N at edges, equal for every seed. Samples N to 2N
+# - 1 are equally well stratified. "defaults" has Blender's values of these five options. A `threshold`
+# enables adaptive sampling in both presets. Neither preset denoises. Both use orrery's pixel filter and path
+# length.
 def choose_preset(cycles, preset, samples, threshold):
     fair = preset == "fair"
     cycles.sample_offset = samples if fair else 0

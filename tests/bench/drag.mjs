@@ -1,15 +1,15 @@
-// Latency of a drag in Chromium without a display: from a pointer movement to the preview drawn for it, less
-// the service's own work on that picture.
+// Measures the latency of a drag in headless Chromium: from a pointer movement to the preview drawn for it,
+// less the service's time for this image.
 
 import { packageFile, startBrowser, startDaemon } from "../browser/support.mjs";
 
 const SCENE = "paper";
 const SECONDS = 8;
-const MOVE_MS = 16; // between movements, as of a 60 Hz pointer
+const MOVE_MS = 16; // interval of movements, as from a 60 Hz pointer
 const TARGETS = { p50: 25, p95: 50 }; // ms
 
-// Runs in the page. Records for each preview {input, asked, drawn, serverMs}, times in ms. `input` is the
-// newest movement before the request, `inputs` are all movements.
+// Runs in the page. Records {input, asked, drawn, serverMs} for each preview, as times in ms. `input` is the
+// newest movement before the request. `inputs` contains all movements.
 function instrument() {
   const notes = (window.notes = { inputs: [], previews: [] });
   let pending = null;
@@ -69,13 +69,13 @@ async function run() {
     await page.locator('#stage[data-shows="still"]').waitFor();
     await dragFor(page, SECONDS);
     const { inputs, previews } = await page.evaluate(() => window.notes);
-    // Counts the first preview of each movement: while the view glides on, later previews show it too.
+    // Counts only the first preview of each movement. Later previews show the glide after it.
     const first = previews.filter(({ input }, at) => input && previews[at - 1]?.input !== input);
     console.log(
       `\n${inputs.length} movements, ${previews.length} previews of ${SCENE}, ${previews[0]?.width} pixels wide`,
     );
     printRow(
-      "newest movement to its preview, less the service's work",
+      "newest movement to its preview, less the service's time",
       first.map((p) => p.drawn - p.input - p.serverMs),
       TARGETS,
     );
@@ -87,9 +87,9 @@ async function run() {
       const shown = previews.find(({ asked }) => asked >= time);
       return shown ? [shown.drawn - time] : [];
     });
-    printRow("any movement to the first preview that shows it", waits);
+    printRow("each movement to the first preview that shows it", waits);
     printRow(
-      "the service's work",
+      "the service's time",
       first.map((p) => p.serverMs),
     );
   } finally {
@@ -98,9 +98,9 @@ async function run() {
   }
 }
 
-export const kDrag = {
+export const DRAG = {
   name: "drag",
-  what: "a drag in the page: pointer to preview",
+  what: "latency of a drag in the page, from pointer to preview",
   needs: ["chromium"],
   run: () => (packageFile("playwright-core") ? run() : console.log("drag skipped: playwright-core is not installed")),
 };

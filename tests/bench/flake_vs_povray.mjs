@@ -1,27 +1,27 @@
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
-import { cpu_run, orrery_command, povray_command, run_command } from "./command.mjs";
-import { povray_scene } from "./povray_scene.mjs";
+import { cpuRun, orreryCommand, povrayCommand, runCommand } from "./command.mjs";
+import { povrayScene } from "./povray_scene.mjs";
 
-const kFolder = "build/bench-scenes";
-const kLevel = 4; // 7,381 spheres
-const kSide = 1024,
-  kDepth = 5;
+const FOLDER = "build/bench-scenes";
+const LEVEL = 4; // 7,381 spheres
+const SIDE = 1024,
+  DEPTH = 5;
 
 function start() {
-  mkdirSync(kFolder, { recursive: true });
-  const json = `${kFolder}/sphereflake.json`,
-    pov = `${kFolder}/sphereflake.pov`;
-  run_command(["node", "scenes/generate-sphereflake.mjs", String(kLevel), json]);
-  writeFileSync(pov, povray_scene(JSON.parse(readFileSync(json, "utf8")), 1, kDepth));
+  mkdirSync(FOLDER, { recursive: true });
+  const json = `${FOLDER}/sphereflake.json`,
+    pov = `${FOLDER}/sphereflake.pov`;
+  runCommand(["node", "scenes/generate-sphereflake.mjs", String(LEVEL), json]);
+  writeFileSync(pov, povrayScene(JSON.parse(readFileSync(json, "utf8")), 1, DEPTH));
   return {
-    ours: () => cpu_run(orrery_command(json, kSide, kSide, kDepth)),
-    theirs: () => cpu_run(povray_command(pov, kSide, kSide)),
+    ours: () => cpuRun(orreryCommand(json, SIDE, SIDE, DEPTH)),
+    theirs: () => cpuRun(povrayCommand(pov, SIDE, SIDE)),
   };
 }
 
-export const kFlakeVsPovray = {
+export const FLAKE_VS_POVRAY = {
   name: "flake-vs-povray",
-  what: "7,381 spheres of gold, 1024x1024, 3 lights, depth 5, one sample, one thread, against POV-Ray",
+  what: "7,381 spheres of gold, 1024x1024, 3 lights, depth 5, one sample, one thread, compared with POV-Ray",
   cost: "CPU s",
   reach: 5,
   aim: 10,

@@ -12,11 +12,11 @@
 #include "tests/bench/rays.h"
 #include "tests/support/batches.h"
 
-// Compares our BVH with Embree's: the same mesh, the same rays, one thread.
+// Compares orrery's BVH with Embree's on the same mesh and the same rays, on one thread.
 //   bench SUBJECT|FILE TRIANGLES open|room default|robust [STRUCTURE]
 //   bench list
-// Prints facts of both sides in JSON, with the kinds of rays and "build". Then, for each input line "ours
-// KIND" or "theirs KIND", runs that side once and prints its CPU seconds.
+// Prints facts of both sides as JSON, including the measurement kinds: the kinds of rays, and "build". For
+// each input line "ours KIND" or "theirs KIND", it then runs this side once and prints its CPU seconds.
 namespace orrery::bench {
 namespace {
 
@@ -44,7 +44,7 @@ class Ours {
   Ours(const Mesh& mesh, std::string_view structure) : prepared_(load_scene(kScene, InMemory(mesh))) {
     for (const auto& type : accelerator_types())
       if (type.name == structure) type_ = &type;
-    if (!type_) throw Error("no structure is called " + std::string(structure));
+    if (!type_) throw Error("unknown structure " + std::string(structure));
     double build_ms = 0;
     world_ = world_for<float>(prepared_.parts(), *type_, 0, build_ms);
   }
@@ -57,7 +57,7 @@ class Ours {
     return thread_seconds() - start;
   }
 
-  // Returns CPU seconds. Sets `found` and adds to `counts`.
+  // Returns the CPU seconds. Sets `found` and adds to `counts`.
   double closest(const RaySet& set, Hits& found, AcceleratorCounts& counts) const {
     const auto batches = batches_of(set);
     std::vector<HitBatch<float>> hits(batches.size());
@@ -111,7 +111,7 @@ class Ours {
 void require_same(const std::string& kind, std::size_t ours, std::size_t theirs, std::size_t rays) {
   const std::size_t differ = ours > theirs ? ours - theirs : theirs - ours;
   if (differ * 1000 > rays)
-    throw Error(kind + ": ours found " + std::to_string(ours) + ", theirs " + std::to_string(theirs) +
+    throw Error(kind + ": hits differ: ours " + std::to_string(ours) + ", theirs " + std::to_string(theirs) +
                 " of " + std::to_string(rays));
 }
 

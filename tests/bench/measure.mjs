@@ -1,4 +1,4 @@
-// Interleaved runs: the speed of a machine drifts, but not the ratio of two neighbouring runs.
+// Interleaves the runs of both sides. The speed of a machine drifts, but hardly between neighbouring runs.
 
 export function median(values) {
   const sorted = [...values].sort((a, b) => a - b);
@@ -6,33 +6,33 @@ export function median(values) {
   return sorted.length % 2 === 1 ? sorted[middle] : (sorted[middle - 1] + sorted[middle]) / 2;
 }
 
-// Shows one line on a terminal, which the next call overwrites. "" clears it.
-export function show_progress(text) {
+// Shows a line on a terminal. The next call overwrites it, and "" clears it.
+export function showProgress(text) {
   if (process.stderr.isTTY) process.stderr.write(`\r\x1b[K${text}`);
 }
 
-// Runs each side `pairs` times in the order ABBA, after a warm-up of each. The ratio is the median of theirs
-// / ours by pair. Seconds are medians.
+// Runs each side `pairs` times in the order ABBA, after one warm-up run each. The ratio is the median of
+// theirs / ours over the pairs. Seconds are medians.
 export async function measure(benchmark, pairs) {
   const sides = await benchmark.start();
   const ratios = [],
-    ours_cpu_s = [],
-    theirs_cpu_s = [];
+    oursCpuS = [],
+    theirsCpuS = [];
   try {
     await sides.ours();
     await sides.theirs();
     for (let pair = 0; pair < pairs; ++pair) {
-      show_progress(`${benchmark.name}: pair ${pair + 1} of ${pairs}`);
+      showProgress(`${benchmark.name}: pair ${pair + 1} of ${pairs}`);
       let ours;
       if (pair % 2 === 0) ours = await sides.ours();
       const theirs = await sides.theirs();
       ours ??= await sides.ours();
       ratios.push(theirs.cost / ours.cost);
-      ours_cpu_s.push(ours.cpu_s);
-      theirs_cpu_s.push(theirs.cpu_s);
+      oursCpuS.push(ours.cpuS);
+      theirsCpuS.push(theirs.cpuS);
     }
   } finally {
-    show_progress("");
+    showProgress("");
     await sides.stop?.();
   }
   const { name, what, cost, reach, aim } = benchmark;
@@ -41,13 +41,13 @@ export async function measure(benchmark, pairs) {
     what,
     cost,
     ratio: median(ratios),
-    ratio_min: Math.min(...ratios),
-    ratio_max: Math.max(...ratios),
+    ratioMin: Math.min(...ratios),
+    ratioMax: Math.max(...ratios),
     reach,
     aim,
     runs: pairs,
-    ours_cpu_s: median(ours_cpu_s),
-    theirs_cpu_s: median(theirs_cpu_s),
+    oursCpuS: median(oursCpuS),
+    theirsCpuS: median(theirsCpuS),
     remark: sides.remark,
   };
 }

@@ -28,7 +28,7 @@ inline std::shared_ptr<const Scene> load_scene_at(const std::string& path) {
   return load_scene(text, AssetFiles(std::filesystem::path(path).parent_path()));
 }
 
-// Reads lines "ours" or "theirs" from standard input. Prints for each the sum of `repeats` calls of
+// Reads lines "ours" or "theirs" from standard input. For each line, prints the sum of `repeats` calls of
 // seconds_of(is_ours).
 template <class SecondsOf>
 void serve_runs(int repeats, const SecondsOf& seconds_of) {

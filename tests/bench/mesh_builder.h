@@ -34,7 +34,7 @@ struct MeshBuilder {
                                      std::array{2, 3, 7, 6}, std::array{0, 2, 6, 4}, std::array{1, 3, 7, 5}})
       add_quad(corner(a), corner(b), corner(c), corner(d));
   }
-  // Adds a block on a floor, rotated about its vertical axis. `half`: half its side. `angle` in radians.
+  // Adds a block on a floor, rotated by `angle` radians about its vertical axis. `half` is half its side.
   void add_block(const Vec3d& foot, double half, double height, double angle) {
     const auto at = [&](double x, double y, double z) {
       return foot + Vec3d(half * (x * std::cos(angle) - z * std::sin(angle)), y * height,
@@ -48,7 +48,8 @@ struct MeshBuilder {
     }
     add_quad(at(-1, 1, -1), at(1, 1, -1), at(1, 1, 1), at(-1, 1, 1));
   }
-  // Adds a square cell of a plate, 2 `size` wide and 2 `half` thick about `center`, with a round hole.
+  // Adds a square cell of a plate with a round hole about `center`. The cell is 2 `size` wide and 2 `half`
+  // thick.
   void add_drilled_cell(const Vec3d& center, double size, double half, double radius, int segments) {
     const auto on_hole = [&](int i, double y) { return on_circle(center, radius, y, i, segments); };
     for (int i = 0; i < segments; ++i) {
@@ -56,7 +57,7 @@ struct MeshBuilder {
       for (const double y : {-half, half})
         add_triangle(on_hole(i, y), on_hole(i + 1, y), center + Vec3d(0, y, 0) + corner(size, i, segments));
     }
-    for (const double y : {-half, half})  // fills the gaps between the fans of the corners
+    for (const double y : {-half, half})  // fills the gaps between the triangle fans of the corners
       for (int quarter = 0; quarter < 4; ++quarter) {
         const int i = (quarter * segments + 3) / 4;
         add_triangle(on_hole(i, y), center + Vec3d(0, y, 0) + corner(size, i - 1, segments),

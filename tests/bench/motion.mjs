@@ -1,10 +1,10 @@
-// BVHs that are refitted to moving objects, compared with rebuilt ones.
+// Compares BVHs that are refitted to moving objects with rebuilt BVHs.
 
 import { mkdirSync, writeFileSync } from "node:fs";
-import { kFolder, random_numbers, scene_of } from "./subjects.mjs";
-import { start_two_sided } from "./two_sided.mjs";
+import { FOLDER, randomNumbers, sceneOf } from "./subjects.mjs";
+import { startTwoSided } from "./two_sided.mjs";
 
-const kProgram = "build/motion";
+const PROGRAM = "build/motion";
 
 // Returns a scene with a waving sheet of 72,000 triangles.
 function cloth() {
@@ -30,15 +30,15 @@ function cloth() {
     indices: Array.from({ length: side * side }, (_, i) => square(i)).flat(),
     motion: [{ time: 0 }, { time: 1, positions: sheet(2) }, { time: 2, positions: sheet(4) }],
   };
-  return scene_of("A waving sheet of 72,000 triangles", [mesh], [0, 2.5, 4]);
+  return sceneOf("A waving sheet of 72,000 triangles", [mesh], [0, 2.5, 4]);
 }
 
-// Returns a scene with 4,000 balls, each of which flies to a different place.
+// Returns a scene with 4,000 balls, each of which moves to a different place.
 function swarm() {
-  const random = random_numbers(11),
+  const random = randomNumbers(11),
     at = () => [0, 1, 2].map(() => 8 * random() - 4);
-  const scene = scene_of(
-    "4,000 balls that fly about",
+  const scene = sceneOf(
+    "4,000 moving balls",
     [{ type: "plane", point: [0, -5, 0], normal: [0, 1, 0], material: "chalk" }],
     [0, 0, 13],
   );
@@ -54,12 +54,12 @@ function swarm() {
   return scene;
 }
 
-const kSubjects = { cloth, swarm };
+const SUBJECTS = { cloth, swarm };
 
-function path_of(subject) {
-  mkdirSync(kFolder, { recursive: true });
-  const path = `${kFolder}/${subject}.json`;
-  writeFileSync(path, JSON.stringify(kSubjects[subject]()));
+function pathOf(subject) {
+  mkdirSync(FOLDER, { recursive: true });
+  const path = `${FOLDER}/${subject}.json`;
+  writeFileSync(path, JSON.stringify(SUBJECTS[subject]()));
   return path;
 }
 
@@ -70,21 +70,29 @@ function comparison(subject, what, words) {
     cost: "CPU s of one thread",
     reach: null,
     aim: null,
-    needs: [kProgram],
+    needs: [PROGRAM],
     start: async () => {
-      const { facts, ...sides } = await start_two_sided(kProgram, [path_of(subject), what]);
-      const { frames, refitted, surface_area_growth, primitives } = facts;
+      const { facts, ...sides } = await startTwoSided(PROGRAM, [pathOf(subject), what]);
+      const { frames, refitted, surface_area_growth: surfaceAreaGrowth, primitives } = facts;
       const remark =
-        `${primitives} primitives; of ${frames} frames ${refitted} followed the one before; ` +
-        `boxes at most ${surface_area_growth.toFixed(2)} times as large, relative to their contents, as when built`;
+        `${primitives} primitives; ${refitted} of ${frames} frames refitted; ` +
+        `relative surface area of boxes at most ${surfaceAreaGrowth.toFixed(2)} times that of the build`;
       return { ...sides, remark };
     },
   };
 }
 
-export const kMotion = [
-  comparison("cloth", "ready", "a waving sheet: following the frame before, against building anew"),
-  comparison("cloth", "rays", "the last frame of it: rays in the structure that followed, against a new one"),
-  comparison("swarm", "ready", "balls that fly about: following or not, as it was decided, against building anew"),
-  comparison("swarm", "rays", "the last frame of them: rays in the structure that followed, against a new one"),
+export const MOTION = [
+  comparison("cloth", "ready", "a waving sheet: refit for the last frame, compared with a rebuild"),
+  comparison(
+    "cloth",
+    "rays",
+    "a waving sheet: rays of the last frame in the refitted structure, compared with a rebuilt one",
+  ),
+  comparison("swarm", "ready", "moving balls: automatic refit or rebuild for the last frame, compared with a rebuild"),
+  comparison(
+    "swarm",
+    "rays",
+    "moving balls: rays of the last frame in the automatic structure, compared with a rebuilt one",
+  ),
 ];

@@ -1,14 +1,14 @@
-import { cpu_run, orrery_command } from "./command.mjs";
+import { cpuRun, orreryCommand } from "./command.mjs";
 
-const kCommand = orrery_command("scenes/paper.json", 3000, 3000, 5);
+const COMMAND = orreryCommand("scenes/paper.json", 3000, 3000, 5);
 
-// Deviation of a ratio from 1 by chance.
-export const kNoise = {
+// Measures how far chance moves a ratio from 1.
+export const NOISE = {
   name: "noise",
-  what: "the paper's scene against itself: how far from 1 chance alone takes a ratio",
+  what: "the scene `paper` compared with itself: deviation of the ratio from 1 by chance",
   cost: "CPU s",
   reach: null,
   aim: null,
   needs: [],
-  start: () => ({ ours: () => cpu_run(kCommand), theirs: () => cpu_run(kCommand) }),
+  start: () => ({ ours: () => cpuRun(COMMAND), theirs: () => cpuRun(COMMAND) }),
 };

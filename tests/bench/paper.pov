@@ -1,4 +1,4 @@
-// scenes/paper.json for POV-Ray 3.7: the same rays to the same depth. tests/povray checks that the pictures
+// scenes/paper.json for POV-Ray 3.7: the same rays to the same depth. tests/povray checks that the images
 // agree.
 #version 3.7;
 global_settings {

@@ -1,16 +1,17 @@
-// Linear pictures from OpenEXR files, and their differences.
+// Reads linear images from OpenEXR files and compares them.
 
 import { readFileSync } from "node:fs";
 import { inflateSync } from "node:zlib";
 
-const kMagic = 20000630,
-  kVersion = 2,
-  kLongNames = 0x400,
-  kFloat = 2;
-const kLinesOf = { 0: 1, 2: 1, 3: 16 }; // scan lines per block, by compression: none, ZIPS, ZIP
+const MAGIC = 20000630,
+  VERSION = 2,
+  LONG_NAMES = 0x400,
+  FLOAT = 2;
+const LINES_OF = { 0: 1, 2: 1, 3: 16 }; // scan lines per block, by compression: none, ZIPS, ZIP
 
-// Returns the attributes by name, as the bytes of their values, and the offset of their end.
-function read_header(file) {
+// Returns the attributes of the header by name, as the bytes of their values, and the offset of the header's
+// end.
+function readHeader(file) {
   const attributes = {};
   let at = 8;
   const word = () => {
@@ -29,19 +30,19 @@ function read_header(file) {
 }
 
 // Returns the names of the channels in the order of the file. Throws Error unless all are 32-bit floats.
-function channels_of(list) {
+function channelsOf(list) {
   const names = [];
   for (let at = 0; list[at] !== 0;) {
     const end = list.indexOf(0, at);
     names.push(list.toString("latin1", at, end));
-    if (list.readInt32LE(end + 1) !== kFloat) throw new Error("the picture is not of 32 bit floats");
+    if (list.readInt32LE(end + 1) !== FLOAT) throw new Error("channels must be 32-bit floats");
     at = end + 17;
   }
   return names;
 }
 
-// Inflates a ZIP or ZIPS block and undoes its filter: even bytes first, then odd ones, each less the one
-// before.
+// Inflates a ZIP or ZIPS block and undoes its predictor: even bytes come before odd ones, and each byte is
+// the difference from the previous one.
 function unpack(packed) {
   const bytes = inflateSync(packed),
     half = (bytes.length + 1) >> 1,
@@ -52,28 +53,28 @@ function unpack(packed) {
 }
 
 // Returns {width, height, values}: R, G and B of each pixel, row by row from the top. Throws Error unless the
-// file is a single-part scan line picture of floats, uncompressed or compressed by ZIP or ZIPS.
-export function read_exr(path) {
+// file is a single-part scan line image of floats, uncompressed or compressed by ZIP or ZIPS.
+export function readExr(path) {
   const file = readFileSync(path);
-  const is_plain = file.readInt32LE(0) === kMagic && (file.readInt32LE(4) & ~kLongNames) === kVersion;
-  if (!is_plain) throw new Error(`${path} is no OpenEXR picture of one part in scan lines`);
-  const { attributes, end } = read_header(file);
+  const isPlain = file.readInt32LE(0) === MAGIC && (file.readInt32LE(4) & ~LONG_NAMES) === VERSION;
+  if (!isPlain) throw new Error(`${path}: must be a single-part OpenEXR image in scan lines`);
+  const { attributes, end } = readHeader(file);
   const [left, top, right, bottom] = [0, 4, 8, 12].map((at) => attributes.dataWindow.readInt32LE(at));
   const width = right - left + 1,
     height = bottom - top + 1;
-  const channels = channels_of(attributes.channels),
-    lines = kLinesOf[attributes.compression[0]];
-  if (!lines) throw new Error(`${path} is compressed in a way that is not known here`);
-  const places = channels.map((name) => "RGB".indexOf(name)); // -1: a channel that is not read
+  const channels = channelsOf(attributes.channels),
+    lines = LINES_OF[attributes.compression[0]];
+  if (!lines) throw new Error(`${path}: compression must be none, ZIPS or ZIP`);
+  const places = channels.map((name) => "RGB".indexOf(name)); // -1 for a channel that is not read
   const values = new Float32Array(3 * width * height),
-    line_bytes = 4 * width * channels.length;
+    lineBytes = 4 * width * channels.length;
   for (let block = 0; block * lines < height; ++block) {
     const at = Number(file.readBigUInt64LE(end + 8 * block)),
       size = file.readInt32LE(at + 4);
     const first = file.readInt32LE(at) - top,
       count = Math.min(lines, height - first);
     const stored = file.subarray(at + 8, at + 8 + size);
-    const bytes = size < count * line_bytes ? unpack(stored) : stored;
+    const bytes = size < count * lineBytes ? unpack(stored) : stored;
     for (let i = 0; i < count * channels.length; ++i) {
       const row = first + Math.floor(i / channels.length),
         place = places[i % channels.length];
@@ -84,9 +85,9 @@ export function read_exr(path) {
   return { width, height, values };
 }
 
-// Returns the picture of the means of blocks of side x side pixels. REQUIRES: width and height are multiples
+// Returns the image of the means over blocks of side x side pixels. REQUIRES: width and height are multiples
 // of side.
-export function block_means({ width, height, values }, side) {
+export function blockMeans({ width, height, values }, side) {
   if (side === 1) return { width, height, values };
   const across = width / side,
     means = new Float64Array((3 * across * height) / side);
@@ -98,16 +99,16 @@ export function block_means({ width, height, values }, side) {
   return { width: across, height: height / side, values: means };
 }
 
-// Returns the mean of (a - b) (c - d) over pixels and channels. REQUIRES: all pictures have one size.
-export function mean_product(a, b, c, d) {
+// Returns the mean of (a - b) (c - d) over pixels and channels. REQUIRES: all images have one size.
+export function meanProduct(a, b, c, d) {
   let sum = 0;
   for (let i = 0; i < a.values.length; ++i) sum += (a.values[i] - b.values[i]) * (c.values[i] - d.values[i]);
   return sum / a.values.length;
 }
 
-// Returns the same mean and its standard error from the spread over pixels. The channels of a pixel are
-// averaged.
-export function product_statistics(a, b, c, d) {
+// Returns the mean of (a - b) (c - d) and its standard error, estimated from the variation between pixels.
+// The channels of a pixel are averaged.
+export function productStatistics(a, b, c, d) {
   const pixels = a.values.length / 3;
   let sum = 0,
     squares = 0;
@@ -122,13 +123,13 @@ export function product_statistics(a, b, c, d) {
 }
 
 // Returns the means of R, G and B over the picture.
-export function channel_means({ values }) {
+export function channelMeans({ values }) {
   const sums = [0, 0, 0];
   values.forEach((value, i) => (sums[i % 3] += value));
   return sums.map((sum) => (3 * sum) / values.length);
 }
 
-export function mean_picture(pictures) {
+export function meanPicture(pictures) {
   const { width, height } = pictures[0],
     values = new Float64Array(3 * width * height);
   for (const picture of pictures) picture.values.forEach((value, i) => (values[i] += value / pictures.length));

@@ -1,5 +1,4 @@
-// Converter of scenes with spheres and planes to POV-Ray's language. tests/povray converts all kinds of
-// scenes.
+// Converts scenes of spheres and planes to POV-Ray's language. tests/povray converts all kinds of scenes.
 
 const vector = (v) => `<${v.join(", ")}>`;
 const plus = (a, b, factor = 1) => a.map((x, i) => x + factor * b[i]);
@@ -8,25 +7,25 @@ const scaled = (v, s) => v.map((x) => x * s);
 const unit = (v) => scaled(v, 1 / Math.sqrt(dot(v, v)));
 const cross = ([ax, ay, az], [bx, by, bz]) => [ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx];
 
-// Throws Error on unknown members: a benchmark must not compare different scenes.
+// Throws Error on unknown members, because a benchmark must not compare different scenes.
 function only(object, kinds) {
   const known = kinds[object.type] ?? [];
   const unknown = Object.keys(object).filter((key) => key !== "type" && !known.includes(key));
-  if (unknown.length > 0) throw new Error(`povray_scene does not know ${object.type}.${unknown[0]}`);
+  if (unknown.length > 0) throw new Error(`cannot convert ${object.type}.${unknown[0]} to POV-Ray`);
   return object;
 }
 
-function camera_of(camera, aspect) {
+function cameraOf(camera, aspect) {
   const known = { perspective: ["eye", "look_at", "up", "fov_degrees"] };
-  const { eye, look_at, up, fov_degrees } = only(camera, known);
-  const forward = unit(plus(look_at, eye, -1));
+  const { eye, look_at: lookAt, up, fov_degrees: fovDegrees } = only(camera, known);
+  const forward = unit(plus(lookAt, eye, -1));
   const right = unit(cross(forward, up));
-  const height = 2 * Math.tan((fov_degrees * Math.PI) / 360);
+  const height = 2 * Math.tan((fovDegrees * Math.PI) / 360);
   return `camera { perspective location ${vector(eye)} direction ${vector(forward)}
   up ${vector(scaled(cross(right, forward), height))} right ${vector(scaled(right, height * aspect))} }\n`;
 }
 
-function texture_of(material) {
+function textureOf(material) {
   const { type, n, k, kd } = only(material, { reflective: ["n", "k"], rough: ["kd"] });
   if (type === "rough") return `texture { pigment { rgb ${vector(kd)} } finish { ambient 1 diffuse 1 } }`;
   const f0 = n.map((x, i) => ((x - 1) ** 2 + k[i] ** 2) / ((x + 1) ** 2 + k[i] ** 2));
@@ -34,12 +33,12 @@ function texture_of(material) {
   return `texture { pigment { rgb 0 } finish { ambient 0 diffuse 0 ${reflection} } }`;
 }
 
-function light_of(light) {
+function lightOf(light) {
   const { position, intensity } = only(light, { point: ["position", "intensity"] });
   return `light_source { ${vector(position)} rgb ${vector(intensity)} }\n`;
 }
 
-function object_of(object) {
+function objectOf(object) {
   const { type, center, radius, point, normal, material } = only(object, {
     sphere: ["center", "radius", "material"],
     plane: ["point", "normal", "material"],
@@ -48,14 +47,14 @@ function object_of(object) {
   return `plane { ${vector(unit(normal))}, ${dot(unit(normal), point)} texture { Texture_${material} } }\n`;
 }
 
-export function povray_scene(scene, aspect, depth) {
+export function povrayScene(scene, aspect, depth) {
   const { camera, materials, lights, objects, ambient, background } = scene;
-  const texture = ([name, material]) => `#declare Texture_${name} = ${texture_of(material)}\n`;
-  const parts = [Object.entries(materials).map(texture), lights.map(light_of), objects.map(object_of)];
+  const texture = ([name, material]) => `#declare Texture_${name} = ${textureOf(material)}\n`;
+  const parts = [Object.entries(materials).map(texture), lights.map(lightOf), objects.map(objectOf)];
   return `#version 3.7;
 global_settings {
   assumed_gamma 1 adc_bailout 0 max_trace_level ${depth + 1} ambient_light rgb ${vector(ambient)}
 }
 background { rgb ${vector(background)} }
-${camera_of(camera, aspect)}${parts.flat().join("")}`;
+${cameraOf(camera, aspect)}${parts.flat().join("")}`;
 }

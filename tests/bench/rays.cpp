@@ -26,7 +26,7 @@ RaySet primary_rays(const Vec3f& eye) {
   return set;
 }
 
-// Calls make(next, point, normal) for each hit, to add a ray. The point is just off the surface. The normal
+// Calls make(next, point, normal) for each hit to add a ray. The point is just above the surface. The normal
 // is on the side of the incoming ray.
 template <class Make>
 RaySet from_hits(const Mesh& mesh, const RaySet& rays, const Hits& hits, const Make& make) {

@@ -14,7 +14,7 @@ namespace orrery::bench {
 struct RaySet {
   std::vector<Ray<float>> rays;
   std::vector<float> t_max;
-  bool any_hit = false;  // any hit instead of the closest hit
+  bool any_hit = false;  // search for any hit instead of the closest
 };
 
 // Closest hits with a mesh: triangle, or kNoPrimitive, and distance.
@@ -31,7 +31,7 @@ using FindHits = std::function<Hits(const RaySet&)>;
 //   "short": any hit within half a radius, in cosine-weighted directions
 std::span<const char* const> ray_kinds();
 
-// Returns rays of a kind. REQUIRES: `kind` is one of ray_kinds().
+// Returns the rays of a kind. REQUIRES: `kind` is one of ray_kinds().
 RaySet rays_of(const std::string& kind, const Subject& subject, const FindHits& find);
 
 }  // namespace orrery::bench

@@ -1,18 +1,18 @@
-// Renders of one scene by ours and by Blender's Cycles.
+// Renders one scene with orrery and with Blender's Cycles.
 
 import { spawn, spawnSync } from "node:child_process";
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
-import { kOrrery } from "./command.mjs";
-import { read_exr } from "./picture.mjs";
+import { ORRERY } from "./command.mjs";
+import { readExr } from "./picture.mjs";
 
-const kThreads = 2; // for both, so that the number of cores favours neither
-const kAnswer = /^rendered (\S+)$/;
+const THREADS = 2; // for both renderers, so that the number of cores favours neither
+const ANSWER = /^rendered (\S+)$/;
 
-// Starts Blender once, which takes a second. Its other output is skipped.
-function start_blender(scene) {
+// Starts Blender once, because its start takes a second. Its other output is ignored.
+function startBlender(scene) {
   const words = ["-b", "--factory-startup", "-noaudio", "--python-exit-code", "1", "-P", "tests/bench/cycles_scene.py"];
   const child = spawn("blender", [...words, "--", scene], { stdio: ["pipe", "pipe", "ignore"] });
   child.stdin.on("error", () => {}); // reported by render()
@@ -22,9 +22,9 @@ function start_blender(scene) {
     child.stdin.write(JSON.stringify(order) + "\n");
     for (;;) {
       const { value, done } = await lines.next();
-      if (done) throw new Error(`blender ended with ${await ended}`);
-      const answer = value.match(kAnswer);
-      if (answer) return { cpu_s: Number(answer[1]) };
+      if (done) throw new Error(`blender exited with status ${await ended}`);
+      const answer = value.match(ANSWER);
+      if (answer) return { cpuS: Number(answer[1]) };
     }
   };
   const stop = async () => {
@@ -34,14 +34,14 @@ function start_blender(scene) {
   return { render, stop };
 }
 
-function render_ours(scene, { samples, error, seed, bounces, size, out }) {
+function renderOurs(scene, { samples, error, seed, bounces, size, out }) {
   const goal = error ? { error, space: "display" } : { samples };
-  const options = { width: size, height: size, depth: bounces + 1, ...goal, seed, threads: kThreads };
+  const options = { width: size, height: size, depth: bounces + 1, ...goal, seed, threads: THREADS };
   const words = Object.entries(options).flatMap(([name, value]) => [`--${name}`, String(value)]);
-  const done = spawnSync(kOrrery, ["render", scene, ...words, "--stats=json", "-o", out], { encoding: "utf8" });
-  if (done.status !== 0) throw new Error(`${kOrrery} ended with ${done.status}: ${done.stderr}`);
+  const done = spawnSync(ORRERY, ["render", scene, ...words, "--stats=json", "-o", out], { encoding: "utf8" });
+  if (done.status !== 0) throw new Error(`${ORRERY} exited with status ${done.status}: ${done.stderr}`);
   const told = JSON.parse(done.stdout);
-  return { cpu_s: told.render_cpu_s, told };
+  return { cpuS: told.render_cpu_s, told };
 }
 
 // Returns {ours(order), theirs(order), stop()}. An order is {samples, seed, bounces, preset, threshold,
@@ -49,18 +49,18 @@ function render_ours(scene, { samples, error, seed, bounces, size, out }) {
 //   bounces: reflections before the last light; 0 is direct light
 //   preset ("fair" or "defaults") and threshold (noise): for Cycles only
 //   error, in display values: replaces samples, for ours only
-// The result is {cpu_s, picture}, where cpu_s counts all threads and includes building. Ours adds its
+// The result is {cpuS, picture}, where cpuS counts all threads and includes building. Ours adds its
 // statistics.
-export function start_renderers(scene, size) {
+export function startRenderers(scene, size) {
   const folder = mkdtempSync(join(tmpdir(), "renderers-"));
   const out = join(folder, "picture.exr");
-  const blender = start_blender(scene);
+  const blender = startBlender(scene);
   const render = async (by, order) => {
-    const cost = await by({ preset: "fair", ...order, size, threads: kThreads, out });
-    return { ...cost, picture: read_exr(out) };
+    const cost = await by({ preset: "fair", ...order, size, threads: THREADS, out });
+    return { ...cost, picture: readExr(out) };
   };
   return {
-    ours: (order) => render((full) => render_ours(scene, full), order),
+    ours: (order) => render((full) => renderOurs(scene, full), order),
     theirs: (order) => render(blender.render, order),
     stop: async () => {
       await blender.stop();

@@ -1,20 +1,20 @@
-// Latency of normal clients next to a thousand slow ones. slowhttptest attacks a service, while normal
+// Measures the latency of normal clients during attacks by a thousand slow clients (slowhttptest). Normal
 // clients request the page every 50 ms on new connections.
 
 import { spawn } from "node:child_process";
 import { readdirSync } from "node:fs";
 import http from "node:http";
 import { setTimeout as sleep } from "node:timers/promises";
-import { start_service } from "./daemon.mjs";
+import { startService } from "./daemon.mjs";
 
-const kSeconds = Number(process.env.BENCH_ATTACK_S ?? 60); // for each attack
-const kConnections = 1000,
-  kRate = 200; // kRate: per second
-const kEvery_ms = 50;
-const kSpare = 4; // descriptors of the normal clients
+const SECONDS = Number(process.env.BENCH_ATTACK_S ?? 60); // duration of each attack
+const CONNECTIONS = 1000,
+  RATE = 200; // RATE: per second
+const EVERY_MS = 50;
+const SPARE = 4; // file descriptors for normal clients
 
-// Modes of slowhttptest, and the path that each attacks.
-const kAttacks = [
+// Modes of slowhttptest with the attacked path.
+const ATTACKS = [
   { mode: "-H", name: "slow heads", path: "/", more: [] },
   { mode: "-B", name: "slow bodies", path: "/v1/scenes", more: [] },
   {
@@ -43,14 +43,15 @@ function ask(port) {
   });
 }
 
-// Repeats the attack, which ends early once all its connections are closed. Resolves to the number of runs.
-async function attack_until(end, port, { mode, path, more }) {
+// Repeats the attack until `end`, because slowhttptest exits once all its connections are closed. Resolves to
+// the number of runs.
+async function attackUntil(end, port, { mode, path, more }) {
   const words = [
     mode,
     "-c",
-    kConnections,
+    CONNECTIONS,
     "-r",
-    kRate,
+    RATE,
     "-i",
     5,
     "-u",
@@ -69,39 +70,39 @@ async function attack_until(end, port, { mode, path, more }) {
   return runs;
 }
 
-async function sample_until(end, port, pid) {
+async function sampleUntil(end, port, pid) {
   const asked = [];
   let most = 0;
   while (performance.now() < end) {
     asked.push(ask(port));
     most = Math.max(most, descriptors(pid));
-    await sleep(kEvery_ms);
+    await sleep(EVERY_MS);
   }
   return { answers: await Promise.all(asked), most };
 }
 
-// Resolves to the seconds until the descriptors are back at `before`, or Infinity after 30 s.
-async function back_after(pid, before) {
+// Resolves to the seconds until the number of descriptors is back to `before`, or to Infinity after 30 s.
+async function backAfter(pid, before) {
   const start = performance.now();
   const seconds = () => (performance.now() - start) / 1000;
   while (seconds() < 30) {
-    if (descriptors(pid) <= before + kSpare) return seconds();
+    if (descriptors(pid) <= before + SPARE) return seconds();
     await sleep(100);
   }
   return Infinity;
 }
 
 async function measure(attack) {
-  const service = await start_service([]);
+  const service = await startService([]);
   try {
     for (let i = 0; i < 20; ++i) await ask(service.port);
     const before = descriptors(service.pid);
-    const end = performance.now() + kSeconds * 1000;
+    const end = performance.now() + SECONDS * 1000;
     const [runs, { answers, most }] = await Promise.all([
-      attack_until(end, service.port, attack),
-      sample_until(end, service.port, service.pid),
+      attackUntil(end, service.port, attack),
+      sampleUntil(end, service.port, service.pid),
     ]);
-    const back_s = await back_after(service.pid, before);
+    const backS = await backAfter(service.pid, before);
     const ms = answers.map((answer) => answer.ms).sort((a, b) => a - b);
     const quantile = (q) => ms[Math.min(ms.length - 1, Math.floor(q * ms.length))];
     const served = answers.filter((answer) => answer.ok).length;
@@ -114,35 +115,32 @@ async function measure(attack) {
       worst: ms.at(-1),
       before,
       most,
-      back_s,
+      backS,
     };
   } finally {
     await service.stop();
   }
 }
 
-const kColumns = [14, 7, 8, 10, 9, 9, 9, 13, 8];
-const row = (cells) =>
-  cells.map((cell, i) => (i === 0 ? cell.padEnd(kColumns[i]) : cell.padStart(kColumns[i]))).join("");
+const COLUMNS = [14, 7, 8, 10, 9, 9, 9, 13, 8];
+const row = (cells) => cells.map((cell, i) => (i === 0 ? cell.padEnd(COLUMNS[i]) : cell.padStart(COLUMNS[i]))).join("");
 
-export const kSlowClients = {
+export const SLOW_CLIENTS = {
   name: "slow-clients",
-  what: `${kConnections} connections of slowhttptest for ${kSeconds} s in each of its modes: what others get meanwhile`,
+  what: `latency of normal clients during ${CONNECTIONS} slowhttptest connections, ${SECONDS} s in each of its modes`,
   needs: ["slowhttptest"],
   async run() {
     console.log(
-      "\n" + row(["attack", "runs", "asked", "served %", "p50 ms", "p99 ms", "most ms", "descriptors", "back s"]),
+      "\n" + row(["attack", "runs", "requests", "served %", "p50 ms", "p99 ms", "max ms", "descriptors", "back s"]),
     );
-    for (const attack of kAttacks) {
+    for (const attack of ATTACKS) {
       const r = await measure(attack);
       const cells = [(100 * r.served) / r.asked, r.p50, r.p99, r.worst].map((value) => value.toFixed(1));
       console.log(
-        row([attack.name, String(r.runs), String(r.asked), ...cells, `${r.before}..${r.most}`, r.back_s.toFixed(1)]),
+        row([attack.name, String(r.runs), String(r.asked), ...cells, `${r.before}..${r.most}`, r.backS.toFixed(1)]),
       );
     }
-    console.log(
-      "served: GET / answered with 200, asked every 50 ms on new connections; aims: 100 %, p99 at most 250 ms,",
-    );
-    console.log("descriptors back within 15 s; runs: slowhttptest starts again when all its connections were closed");
+    console.log("served: status 200 for GET / every 50 ms on new connections; aims: 100 %, p99 at most 250 ms,");
+    console.log("descriptors back within 15 s; runs: slowhttptest restarts once all its connections are closed");
   },
 };

@@ -1,20 +1,20 @@
-// Tables and charts of the structures: all structures on different kinds of scenes, and bvh on growing
-// numbers of triangles.
+// Tables and charts of all structures on different kinds of scenes, and of bvh on growing numbers of
+// triangles.
 
 import { spawnSync } from "node:child_process";
 import { mkdirSync, writeFileSync } from "node:fs";
 import { chart } from "./chart.mjs";
-import { write_ball, write_subjects } from "./subjects.mjs";
+import { writeBall, writeSubjects } from "./subjects.mjs";
 
-const kProgram = "build/structures";
-const kSizes = [1e3, 1e4, 1e5, 1e6, 1e7]; // triangles
+const PROGRAM = "build/structures";
+const SIZES = [1e3, 1e4, 1e5, 1e6, 1e7]; // triangles
 
 function measure(scene, rounds, rays, names = []) {
-  const done = spawnSync(kProgram, [scene, String(rounds), rays, ...names], {
+  const done = spawnSync(PROGRAM, [scene, String(rounds), rays, ...names], {
     encoding: "utf8",
     stdio: ["ignore", "pipe", process.stderr.isTTY ? "inherit" : "ignore"],
   });
-  if (done.status !== 0) throw new Error(`${kProgram} ${scene} ended with ${done.status}`);
+  if (done.status !== 0) throw new Error(`${PROGRAM} ${scene} exited with status ${done.status}`);
   return JSON.parse(done.stdout);
 }
 
@@ -28,7 +28,7 @@ const cells = (values, widths) =>
   values.map((v, i) => (i === 0 ? v.padEnd(widths[i]) : v.padStart(widths[i]))).join("");
 const fixed = (value) => (value >= 100 ? value.toFixed(0) : value.toPrecision(3));
 
-const kColumns = [
+const COLUMNS = [
   "structure",
   "build",
   "ray",
@@ -40,13 +40,13 @@ const kColumns = [
   "depth",
   "references",
 ];
-const kWidths = [17, 9, 9, 9, 10, 10, 12, 10, 7, 12];
+const WIDTHS = [17, 9, 9, 9, 10, 10, 12, 10, 7, 12];
 
-function print_scene(name, result) {
+function printScene(name, result) {
   const usual = result.structures.find((s) => s.name === "bvh");
   const cheapest = Math.min(...result.structures.map((s) => s.counted_cost));
-  console.log(`\n${name}: ${result.primitives} primitives, ${result.precision}; auto takes ${result.auto}`);
-  console.log(cells(kColumns, kWidths));
+  console.log(`\n${name}: ${result.primitives} primitives, ${result.precision}; auto selects ${result.auto}`);
+  console.log(cells(COLUMNS, WIDTHS));
   for (const s of result.structures) {
     const row = [
       s.name,
@@ -60,13 +60,13 @@ function print_scene(name, result) {
       String(s.depth),
       fixed(s.references / result.primitives),
     ];
-    console.log(cells(row, kWidths));
+    console.log(cells(row, WIDTHS));
   }
   const chosen = result.structures.find((s) => s.name === result.auto);
-  console.log(`auto's counted cost is ${(chosen.counted_cost / cheapest).toFixed(2)} of the least`);
+  console.log(`counted cost of auto: ${(chosen.counted_cost / cheapest).toFixed(2)} times the minimum`);
 }
 
-function scene_panel(name, result, names) {
+function scenePanel(name, result, names) {
   const usual = result.structures.find((s) => s.name === "bvh");
   const series = names.map((structure) => {
     const s = result.structures.find((one) => one.name === structure);
@@ -78,38 +78,38 @@ function scene_panel(name, result, names) {
   return { title: name, x: "build time", y: "ray cost", series };
 }
 
-const kStructures = {
+const STRUCTURES = {
   name: "structures",
-  what: "every structure on scenes of different nature: build time and ray cost relative to bvh, and counts per ray",
+  what: "all structures on different kinds of scenes: build time and ray cost relative to bvh, and counts per ray",
   run({ pairs, charts }) {
-    const results = write_subjects().map(([name, scene]) => {
+    const results = writeSubjects().map(([name, scene]) => {
       const result = measure(scene, pairs, "picture");
-      print_scene(name, result);
+      printScene(name, result);
       return [name, result];
     });
     console.log(
-      "\nbuild and ray: CPU time relative to bvh, medians of interleaved rounds on one thread; counted: cost by",
+      "\nbuild and ray: CPU time relative to bvh, medians of interleaved rounds on one thread; counted: cost from",
     );
     console.log(
-      "counts relative to the least; visits, boxes, primitives: per ray; bytes and references: per primitive",
+      "counts, relative to the minimum; visits, boxes, primitives: per ray; bytes and references: per primitive",
     );
     const names = [...new Set(results.flatMap(([, result]) => result.structures.map((s) => s.name)))];
-    const panels = results.map(([name, result]) => scene_panel(name, result, names));
-    const title = "Structures: what building costs against what rays cost";
-    const note = "CPU time relative to bvh (1, 1), one thread; ringed: the choice of auto";
+    const panels = results.map(([name, result]) => scenePanel(name, result, names));
+    const title = "Structures: ray cost and build time";
+    const note = "CPU time relative to bvh (1, 1), one thread; ringed: selected by auto";
     save(charts, "structures.svg", chart({ title, note, panels, columns: 4, names }));
   },
 };
 
-const kGrowth = {
+const GROWTH = {
   name: "growth",
-  what: "cost of a ray at random from 1e3 to 1e7 triangles",
+  what: "cost of a random ray with 1e3 to 1e7 triangles",
   run({ pairs, charts }) {
     const widths = [12, 10, 12, 10, 14, 10];
-    const head = ["triangles", "visits", "primitives", "ray", "build a tri.", "bytes"];
+    const head = ["triangles", "visits", "primitives", "ray", "build/tri.", "bytes"];
     console.log("\n" + cells(head, widths));
-    const rows = kSizes.map((triangles) => {
-      const result = measure(write_ball(triangles), pairs, "random", ["bvh"]);
+    const rows = SIZES.map((triangles) => {
+      const result = measure(writeBall(triangles), pairs, "random", ["bvh"]);
       return { triangles: result.primitives, ...result.structures[0] };
     });
     const build = (row) => row.build_s / row.triangles;
@@ -130,25 +130,24 @@ const kGrowth = {
     console.log("visits and primitives: per ray; ray, and build per triangle: CPU time relative to the first row");
     const series = (key) => [{ name: key, line: true, points: rows.map((row) => ({ x: row.triangles, y: row[key] })) }];
     const panels = [
-      { title: "node visits a ray", key: "visits" },
-      { title: "primitive tests a ray", key: "primitives" },
-      { title: "CPU time a ray", key: "relative" },
+      { title: "node visits per ray", key: "visits" },
+      { title: "primitive tests per ray", key: "primitives" },
+      { title: "CPU time per ray", key: "relative" },
     ].map(({ title, key }) => ({
       title,
       x: "triangles",
       y: key === "relative" ? "relative to 1e3 triangles" : "per ray",
-      y_axis: "linear",
+      yAxis: "linear",
       series:
         key === "relative"
           ? [{ name: key, line: true, points: rows.map((row) => ({ x: row.triangles, y: row.ray_s / rows[0].ray_s })) }]
           : series(key),
     }));
-    const title = "Growth: a straight line here is a logarithm";
-    const note =
-      "hierarchy by the surface area heuristic, closest hits of rays at random through a bumpy ball, one thread";
+    const title = "Growth: a straight line is logarithmic";
+    const note = "bvh, closest hits of random rays through a bumpy ball, one thread";
     save(charts, "growth.svg", chart({ title, note, panels, columns: 3, names: [] }));
   },
 };
 
-// Reports without a peer: name, what, and run({pairs, charts}).
-export const kReports = [kStructures, kGrowth].map((report) => ({ ...report, needs: [kProgram] }));
+// Reports without a comparison: {name, what, run({pairs, charts})}.
+export const REPORTS = [STRUCTURES, GROWTH].map((report) => ({ ...report, needs: [PROGRAM] }));

@@ -19,8 +19,8 @@ constexpr double kPi = std::numbers::pi;
 constexpr float kRoomReach = 3;  // half the side of the cube
 const Vec3f kUnderCeiling(0, 0.55f, 0);
 
-// Returns a closed sphere of similar triangles, with bumps of several sizes. `jitter`: maximum displacement
-// of vertices along the surface, relative to the distance of neighbours.
+// Returns a closed sphere of similar triangles, with bumps of several sizes. `jitter` is the maximum
+// displacement of vertices along the surface, relative to their distance.
 Mesh bumpy_sphere(int triangles, double jitter) {
   const int side = std::max(3, static_cast<int>(std::sqrt(triangles / 2.0)));
   std::mt19937 random(2);
@@ -53,7 +53,7 @@ Mesh bumpy_sphere(int triangles, double jitter) {
 
 Subject ball(int triangles) { return {bumpy_sphere(triangles, 0)}; }
 
-// Laser scan: triangles of all shapes over folds.
+// Laser scan: a folded surface of triangles of all shapes.
 Subject scan(int triangles) {
   Mesh mesh = bumpy_sphere(triangles, 0.45);
   for (Vec3f& p : mesh.positions) {
@@ -65,7 +65,7 @@ Subject scan(int triangles) {
   return {std::move(mesh)};
 }
 
-// CAD export: a plate with holes and shafts. Large flat faces, and round ones of triangles a hundredth as
+// CAD export: a plate with holes and shafts. It has large flat faces, and round faces of triangles 1/100 as
 // wide as long.
 Subject cad(int triangles) {
   constexpr int kHoles = 5;  // per side
@@ -83,7 +83,7 @@ Subject cad(int triangles) {
   return {std::move(out.mesh)};
 }
 
-// Foliage: leaves in crowns, with much empty space.
+// Foliage: leaves in crowns, with much empty space between them.
 Subject foliage(int triangles) {
   constexpr int kCrowns = 14;
   std::mt19937 random(3);
@@ -123,7 +123,7 @@ Subject hair(int triangles) {
   return {std::move(out.mesh)};
 }
 
-// Cornell box: 5 walls and two blocks, for any number of triangles.
+// Cornell box: five walls and two blocks, whatever the number of triangles.
 Subject cornell(int) {
   MeshBuilder out;
   const Vec3d a(-0.57, -0.57, -0.57), b(0.57, 0.57, 0.57);
@@ -167,7 +167,7 @@ constexpr NamedSubject kSubjects[] = {{"ball", ball},        {"scan", scan}, {"c
 
 Mesh mesh_of_file(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
-  if (!in) throw Error("no subject and no file is called " + path);
+  if (!in) throw Error("cannot read " + path + ": neither a subject nor a file");
   const TriangleMesh read = read_mesh(std::string(std::istreambuf_iterator<char>(in), {}));
   Mesh mesh;
   for (const Vec3d& p : read.positions) mesh.positions.push_back(Vec3f(p));

@@ -6,7 +6,7 @@
 
 #include "core/math/vec3.h"
 
-// Typical meshes of users, for both sides of a comparison.
+// Typical meshes for both sides of a comparison.
 namespace orrery::bench {
 
 struct Mesh {
@@ -25,11 +25,11 @@ struct Subject {
 // Returns the names of the generated subjects.
 std::vector<std::string> subject_names();
 
-// Returns a generated subject of about `triangles` triangles, or a mesh file (OBJ, PLY, STL, GLB) scaled into
-// the unit sphere with all its triangles. Throws Error if `name` is neither.
+// Returns a generated subject of about `triangles` triangles, or a mesh file (OBJ, PLY, STL, GLB) with all
+// its triangles, scaled into the unit sphere. Throws Error if `name` is neither.
 Subject subject_of(const std::string& name, int triangles);
 
-// Adds the 12 triangles of a cube around the subject and its eye, so that every ray hits something.
+// Adds a cube of 12 triangles around the subject and its eye, so that every ray hits.
 void put_in_room(Mesh& mesh);
 
 }  // namespace orrery::bench

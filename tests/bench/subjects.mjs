@@ -1,12 +1,12 @@
-// Generated scenes of different kinds for measuring structures.
+// Generated scenes of different kinds for measurements of structures.
 
 import { copyFileSync, existsSync, mkdirSync, writeFileSync } from "node:fs";
-import { run_command } from "./command.mjs";
+import { runCommand } from "./command.mjs";
 
-export const kFolder = "build/bench-scenes";
+export const FOLDER = "build/bench-scenes";
 
 // Returns a generator of numbers in [0, 1), determined by `seed` (mulberry32).
-export function random_numbers(seed) {
+export function randomNumbers(seed) {
   let state = seed;
   return () => {
     state = (state + 0x6d2b79f5) | 0;
@@ -17,11 +17,11 @@ export function random_numbers(seed) {
 }
 
 // Returns a lit scene of `objects`, seen from `eye`.
-export function scene_of(title, objects, eye, look_at = [0, 0, 0]) {
+export function sceneOf(title, objects, eye, lookAt = [0, 0, 0]) {
   return {
     version: 1,
     title,
-    camera: { type: "perspective", eye, look_at, fov_degrees: 45 },
+    camera: { type: "perspective", eye, look_at: lookAt, fov_degrees: 45 },
     image: { width: 512, height: 512 },
     ambient: [0.3, 0.3, 0.3],
     background: [0.5, 0.6, 0.8],
@@ -39,7 +39,7 @@ export function scene_of(title, objects, eye, look_at = [0, 0, 0]) {
 }
 
 // Writes a binary PLY file. `vertex(i)` and `triangle(i)` return three numbers each.
-function write_ply(path, vertices, vertex, triangles, triangle) {
+function writePly(path, vertices, vertex, triangles, triangle) {
   const head =
     "ply\nformat binary_little_endian 1.0\n" +
     `element vertex ${vertices}\nproperty float x\nproperty float y\nproperty float z\n` +
@@ -55,7 +55,7 @@ function write_ply(path, vertices, vertex, triangles, triangle) {
 }
 
 // Writes a closed sphere of about `triangles` triangles, with bumps of several sizes.
-function write_bumpy_sphere(path, triangles, radius) {
+function writeBumpySphere(path, triangles, radius) {
   const side = Math.max(3, Math.round(Math.sqrt(triangles / 2)));
   const vertex = (i) => {
     const polar = (Math.PI * Math.floor(i / side)) / side,
@@ -78,19 +78,19 @@ function write_bumpy_sphere(path, triangles, radius) {
       d = b + side;
     return i % 2 === 0 ? [a, b, c] : [b, d, c];
   };
-  write_ply(path, side * (side + 1), vertex, 2 * side * side, triangle);
+  writePly(path, side * (side + 1), vertex, 2 * side * side, triangle);
 }
 
-// Makers of the subjects. A maker may write files to kFolder. It returns the scene, the path of a scene to
-// copy, null if it has written <name>.json itself, or undefined if a file is missing.
-const kSubjects = {
+// Functions that make the subjects. They may write files to FOLDER. They return the scene, the path of a
+// scene to copy, null if they have written <name>.json, or undefined if a file is missing.
+const SUBJECTS = {
   few: () => "scenes/glass.json",
   flake: () => {
-    run_command(["node", "scenes/generate-sphereflake.mjs", "4", `${kFolder}/flake.json`]);
+    runCommand(["node", "scenes/generate-sphereflake.mjs", "4", `${FOLDER}/flake.json`]);
     return null;
   },
   cloud: () => {
-    const random = random_numbers(1),
+    const random = randomNumbers(1),
       at = () => 8 * random() - 4;
     const ball = (i) => ({
       type: "sphere",
@@ -98,14 +98,14 @@ const kSubjects = {
       radius: 0.05 + 0.1 * random(),
       material: i % 4 ? "chalk" : "steel",
     });
-    return scene_of(
+    return sceneOf(
       "A cloud of 8,000 balls",
       Array.from({ length: 8000 }, (_, i) => ball(i)),
       [0, 0, 13],
     );
   },
   stadium: () => {
-    write_bumpy_sphere(`${kFolder}/stadium-teapot.ply`, 10_000, 0.5);
+    writeBumpySphere(`${FOLDER}/stadium-teapot.ply`, 10_000, 0.5);
     const objects = [{ type: "mesh", file: "stadium-teapot.ply", material: "steel" }];
     const ring = 300;
     const place = (i, radius, y) => {
@@ -121,10 +121,10 @@ const kSubjects = {
         objects.push({ type: "triangle", vertices: [a, b, c], material: "chalk" });
         objects.push({ type: "triangle", vertices: [b, d, c], material: "chalk" });
       }
-    return scene_of("A teapot's worth of triangles in a stadium", objects, [1.2, 0.8, 1.8]);
+    return sceneOf("A teapot in a stadium", objects, [1.2, 0.8, 1.8]);
   },
   needles: () => {
-    const random = random_numbers(3),
+    const random = randomNumbers(3),
       at = (size) => size * (2 * random() - 1);
     const needle = () => {
       const from = [at(3), at(3), at(3)],
@@ -132,48 +132,48 @@ const kSubjects = {
       return [from, from.map((x, k) => x + along[k]), from.map((x) => x + at(0.02))];
     };
     const objects = Array.from({ length: 6000 }, () => ({ type: "triangle", vertices: needle(), material: "chalk" }));
-    return scene_of("6,000 long thin triangles", objects, [0, 0, 11]);
+    return sceneOf("6,000 long thin triangles", objects, [0, 0, 11]);
   },
   bumpy: () => {
-    write_bumpy_sphere(`${kFolder}/bumpy.ply`, 70_000, 1);
+    writeBumpySphere(`${FOLDER}/bumpy.ply`, 70_000, 1);
     const objects = [
       { type: "mesh", file: "bumpy.ply", material: "chalk" },
       { type: "plane", point: [0, -1.2, 0], normal: [0, 1, 0], material: "steel" },
     ];
-    return scene_of("A bumpy ball of 70,000 triangles", objects, [0.7, 0.9, 3]);
+    return sceneOf("A bumpy ball of 70,000 triangles", objects, [0.7, 0.9, 3]);
   },
   bunny: () => {
     const from = `${process.env.BENCH_MESHES}/stanford-bunny.obj`;
     if (!process.env.BENCH_MESHES || !existsSync(from)) return undefined;
-    copyFileSync(from, `${kFolder}/bunny.obj`);
+    copyFileSync(from, `${FOLDER}/bunny.obj`);
     const objects = [
       { type: "mesh", file: "bunny.obj", material: "chalk" },
       { type: "plane", point: [0, 0.033, 0], normal: [0, 1, 0], material: "steel" },
     ];
-    return scene_of("The Stanford bunny", objects, [-0.05, 0.2, 0.3], [-0.02, 0.1, 0]);
+    return sceneOf("The Stanford bunny", objects, [-0.05, 0.2, 0.3], [-0.02, 0.1, 0]);
   },
 };
 
 // Writes a bumpy ball of about `triangles` triangles. Returns the path of the scene.
-export function write_ball(triangles) {
-  mkdirSync(kFolder, { recursive: true });
+export function writeBall(triangles) {
+  mkdirSync(FOLDER, { recursive: true });
   const name = `ball-${triangles}`,
-    path = `${kFolder}/${name}.json`;
-  write_bumpy_sphere(`${kFolder}/${name}.ply`, triangles, 1);
+    path = `${FOLDER}/${name}.json`;
+  writeBumpySphere(`${FOLDER}/${name}.ply`, triangles, 1);
   const objects = [{ type: "mesh", file: `${name}.ply`, material: "chalk" }];
-  writeFileSync(path, JSON.stringify(scene_of(`A ball of ${triangles} triangles`, objects, [0.7, 0.9, 3])));
+  writeFileSync(path, JSON.stringify(sceneOf(`A ball of ${triangles} triangles`, objects, [0.7, 0.9, 3])));
   return path;
 }
 
 // Writes all subjects. Returns [name, path] of each written subject.
-export function write_subjects() {
-  mkdirSync(kFolder, { recursive: true });
+export function writeSubjects() {
+  mkdirSync(FOLDER, { recursive: true });
   const written = [];
-  for (const [name, make] of Object.entries(kSubjects)) {
-    const path = `${kFolder}/${name}.json`,
+  for (const [name, make] of Object.entries(SUBJECTS)) {
+    const path = `${FOLDER}/${name}.json`,
       made = make();
     if (made === undefined) {
-      console.error(`${name} left out: its file is looked for in the folder that BENCH_MESHES names`);
+      console.error(`${name} skipped: its file is missing in the folder BENCH_MESHES`);
       continue;
     }
     if (typeof made === "string") copyFileSync(made, path);

@@ -1,31 +1,31 @@
-// Driver of a program that runs both sides of a comparison. The program's first output line is facts in JSON.
-// Each input line requests a run: "ours" or "theirs", and the kind of run if there are several. The program
-// replies with the CPU seconds of the run.
+// Drives a program that runs both sides of a comparison. The first line of its output contains facts as JSON.
+// Each input line requests a run with "ours" or "theirs", followed by the kind of run if there are several.
+// The program replies with the CPU seconds of the run.
 
 import { spawn } from "node:child_process";
 import { createInterface } from "node:readline";
 
 // Starts the program. Resolves to {facts, ours(), theirs(), stop()}.
-export async function start_two_sided(program, words) {
+export async function startTwoSided(program, words) {
   const child = spawn(program, words, { stdio: ["pipe", "pipe", "inherit"] });
   const ended = new Promise((resolve) => child.once("close", resolve));
   const lines = createInterface({ input: child.stdout })[Symbol.asyncIterator]();
-  const next_line = async () => {
+  const nextLine = async () => {
     const { value, done } = await lines.next();
-    if (done) throw new Error(`${program} ended with ${await ended}`);
+    if (done) throw new Error(`${program} exited with status ${await ended}`);
     return value;
   };
   let facts;
   try {
-    facts = JSON.parse(await next_line());
+    facts = JSON.parse(await nextLine());
   } catch (error) {
     child.kill();
     throw error;
   }
   const run = async (side, kind) => {
     child.stdin.write(kind ? `${side} ${kind}\n` : `${side}\n`);
-    const cpu_s = Number(await next_line());
-    return { cost: cpu_s, cpu_s };
+    const cpuS = Number(await nextLine());
+    return { cost: cpuS, cpuS };
   };
   return {
     facts,

@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// Service with a token, simulated by rejecting requests without one.
+// Tests a service that requires a token, simulated by rejecting requests without one.
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
@@ -51,7 +51,7 @@ test("the page asks for the token once and sends it with every request", async (
   await form.waitFor();
   assert.equal(await page.getByLabel("Access token", { exact: true }).getAttribute("type"), "password");
   await enter(page, "wrong");
-  await eventually("a refusal", async () => /did not accept/.test(await form.textContent()));
+  await eventually("the rejection", async () => /did not accept/.test(await form.textContent()));
   await enter(page, TOKEN);
   await rest(page);
   assert.equal(await form.isVisible(), false);
@@ -60,7 +60,7 @@ test("the page asks for the token once and sends it with every request", async (
   assert.ok(passed.some((path) => path.endsWith("/frame.png")));
 
   const [download] = await Promise.all([page.waitForEvent("download"), page.locator("#download").click()]);
-  assert.match(download.url(), /^blob:/, "a link of its own would carry no token");
+  assert.match(download.url(), /^blob:/, "a plain link would send no token");
   assert.equal(download.suggestedFilename(), "paper-20-0.png");
   assert.equal(readFileSync(await download.path()).toString("latin1", 1, 4), "PNG");
   await page.locator("#curl").click();
@@ -75,7 +75,7 @@ test("the page asks for the token once and sends it with every request", async (
   await page.reload();
   await page.locator("#stage[data-shows]").waitFor();
   assert.equal(await form.isVisible(), false, "the tab keeps the token");
-  assert.equal(refused.length, 4, "two were refused twice");
+  assert.equal(refused.length, 4, "two requests were rejected twice");
   assert.ok(!(await page.content()).includes(TOKEN) && !page.url().includes(TOKEN));
   await close();
 });

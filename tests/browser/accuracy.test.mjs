@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// Speed and accuracy in the page: chart, slider, plans in links, budgets and unknown errors.
+// Tests speed and accuracy in the page: chart, slider, plans in links, budgets and unknown errors.
 
 import assert from "node:assert/strict";
 import { after } from "node:test";
@@ -23,11 +23,11 @@ const text = (page, id) => page.locator(`#${id}`).textContent();
 const shown = (page) => page.locator("#overlay").getAttribute("data-shows");
 const query = (address) => new URLSearchParams(address.split("?")[1]);
 
-// Goes to the first stop. Resolves to the address of its picture once it is shown.
+// Moves the slider to its first stop. Resolves to the URL of the stop's image once it is shown.
 async function firstStop(page, slider) {
   const last = await shown(page);
   await slider.press("Home");
-  return eventually("the first picture", async () => ((await shown(page)) !== last ? shown(page) : null));
+  return eventually("the first image", async () => ((await shown(page)) !== last ? shown(page) : null));
 }
 
 const lineShape = /^[\d.]+ (ms|s), error ≤ [\d.e-]+ \(95 % confidence\), \w+, depth \d+, \d+ samples?, (float|double)$/;
@@ -50,7 +50,7 @@ pageTest(
     const before = await page.locator("#stage").boundingBox();
     await make.click();
     await page.locator("#stop").waitFor({ state: "visible" });
-    assert.deepEqual(await page.locator("#stage").boundingBox(), before, "nothing moves");
+    assert.deepEqual(await page.locator("#stage").boundingBox(), before, "the stage does not move");
     assert.equal(await make.isVisible(), false);
     const texts = await progress.evaluate(({ texts: all }) => [...all]);
     assert.ok(
@@ -59,7 +59,7 @@ pageTest(
     );
     const [{ image, chart }] = seen;
     const canvas = await page.locator("#canvas").evaluate(({ width, height }) => ({ width, height }));
-    assert.deepEqual(image, canvas, "times are predicted for what the stage shows");
+    assert.deepEqual(image, canvas, "times are predicted for the size of the stage");
     assert.ok(chart.width < image.width);
     assert.deepEqual(await axeViolations(page), []);
   },
@@ -80,7 +80,7 @@ pageTest(
     requested.length = 0;
     await page.locator("#stage").hover();
     await page.mouse.wheel(0, 100);
-    await eventually("the offer", async () =>
+    await eventually("the offer to render this view", async () =>
       /The chart renders this view with different settings/.test(await text(page, "stop-line")),
     );
     await predicted();
@@ -90,9 +90,9 @@ pageTest(
     );
     assert.deepEqual([...new Set(requested.map((each) => each.get("samples")))], ["2"], "the chosen number of samples");
     await page.locator("#technique").selectOption("raycast");
-    await eventually("that of other options", async () => requested.at(-1).get("technique") === "raycast");
+    await eventually("a prediction for other options", async () => requested.at(-1).get("technique") === "raycast");
     await page.goBack();
-    await eventually("the first again", async () => requested.at(-1).get("technique") !== "raycast");
+    await eventually("the first prediction again", async () => requested.at(-1).get("technique") !== "raycast");
     await predicted();
     const before = requested.length;
     await page.getByRole("button", { name: "2 s" }).click();
@@ -104,7 +104,7 @@ pageTest(
 );
 
 pageTest(
-  "a rejected prediction is requested again for the next picture",
+  "a rejected prediction is requested again for the next image",
   "playing=0",
   async (page) => {
     const refused = [];
@@ -113,7 +113,7 @@ pageTest(
       return route.fulfill({ status: 429, json: { title: "Too many requests" } });
     });
     await page.locator("#technique").selectOption("raycast");
-    await eventually("the refusal", async () => refused.includes("raycast"));
+    await eventually("the rejection", async () => refused.includes("raycast"));
     await rest(page);
     assert.match(await text(page, "stop-line"), /The chart renders this view with different settings/);
     assert.equal(refused.filter((technique) => technique === "raycast").length, 1);
@@ -126,7 +126,7 @@ pageTest(
 );
 
 pageTest(
-  "arrow keys move the slider from stop to stop and describe each",
+  "arrow keys move the slider between its stops and describe each stop",
   "playing=0",
   async (page) => {
     const slider = await charted(page);
@@ -137,7 +137,7 @@ pageTest(
       last = await valueText();
       assert.match(last, lineShape);
       assert.equal(await text(page, "stop-line"), last);
-      assert.match(await text(page, "stop-note"), /^Without a reference: error (unknown because of \w+|≤)/);
+      assert.match(await text(page, "stop-note"), /^Bound without the reference: error (unknown because of \w+|≤)/);
       lines.push(last);
     }
     assert.ok(lines.length >= 3, lines.join("\n"));
@@ -153,7 +153,7 @@ pageTest(
       await slider.press(key);
       assert.equal(await valueText(), line, key);
       const samples = /(\d+) sample/.exec(line)[1];
-      await eventually(`the picture of ${line}`, async () => {
+      await eventually(`the image of ${line}`, async () => {
         const requested = query(await shown(page)).get("samples");
         return samples === (requested ?? "1");
       });
@@ -185,7 +185,7 @@ pageTest(
     await slider.press("End");
     await eventually("another view", async () => /for another view/.test(await text(page, "stop-note")));
     await page.locator("#overlay").waitFor({ state: "visible" });
-    assert.notEqual(query(await shown(page)).get("distance"), null, "the picture is of the view at hand");
+    assert.notEqual(query(await shown(page)).get("distance"), null, "the image shows the current view");
   },
   still,
 );
@@ -223,14 +223,14 @@ pageTest(
     await eventually("the reference", isReference);
     assert.equal(query(await shown(page)).get("precision"), "double");
     await page.keyboard.up("r");
-    await eventually("the point again", async () => (await shown(page)) === first);
+    await eventually("the image of the point again", async () => (await shown(page)) === first);
     const box = await page.locator("#reference").boundingBox();
     await page.mouse.move(box.x + 5, box.y + 5);
     await page.mouse.down();
     await eventually("the reference", isReference);
     assert.equal(await page.locator("#reference").getAttribute("aria-pressed"), "true");
     await page.mouse.up();
-    await eventually("the point again", async () => (await shown(page)) === first);
+    await eventually("the image of the point again", async () => (await shown(page)) === first);
   },
   still,
 );
@@ -247,16 +247,16 @@ pageTest(
     const requested = page.waitForRequest(/view=bound/);
     await page.keyboard.down("e");
     assert.ok((await requested).url().endsWith(`${point}&view=bound`), (await requested).url());
-    await eventually("the words", async () => /No such view.*draws no bounds/.test(await text(page, "stop-note")));
+    await eventually("the reason", async () => /No such view.*draws no bounds/.test(await text(page, "stop-note")));
     await page.keyboard.up("e");
     assert.equal(await shown(page), point);
     await page.unroute("**/*view=bound*");
     await page.route("**/*view=bound*", (route) => route.fulfill({ status: 303, headers: { Location: point } }));
     await page.keyboard.down("e");
     await eventually("the bound", async () => (await shown(page))?.endsWith("view=bound"));
-    assert.ok(await page.locator("#scale").isVisible(), "its colours have a scale");
+    assert.ok(await page.locator("#scale").isVisible(), "the colour scale is visible");
     await page.keyboard.up("e");
-    await eventually("the point again", async () => (await shown(page)) === point);
+    await eventually("the image of the point again", async () => (await shown(page)) === point);
     await page.locator("#stage").hover();
     await page.mouse.wheel(0, 100);
     await page.locator("#overlay").waitFor({ state: "hidden" });
@@ -264,8 +264,8 @@ pageTest(
     const seen = await page.locator("#download").getAttribute("href");
     const other = page.waitForRequest(/view=bound/);
     await page.locator("#bound").evaluate((button) => button.click());
-    assert.ok((await other).url().endsWith(`${seen}&view=bound`), "that of what is seen");
-    assert.equal(await page.locator("#bound").getAttribute("aria-pressed"), "true", "held without a pointer");
+    assert.ok((await other).url().endsWith(`${seen}&view=bound`), "error map of the shown image");
+    assert.equal(await page.locator("#bound").getAttribute("aria-pressed"), "true", "pressed without a pointer");
     await page.locator("#bound").evaluate((button) => button.click());
     assert.equal(await page.locator("#bound").getAttribute("aria-pressed"), "false");
   },
@@ -273,7 +273,7 @@ pageTest(
 );
 
 pageTest(
-  "the link keeps a used plan and reproduces its picture",
+  "the link keeps a used plan and reproduces its image",
   "playing=0&az=30",
   async (page, context) => {
     const slider = await charted(page);
@@ -282,7 +282,7 @@ pageTest(
     const line = await text(page, "stop-line");
     await page.getByRole("button", { name: "Use these settings" }).click();
     await page.locator("#overlay").waitFor({ state: "hidden" });
-    await eventually("the plan's picture", async () => /^Settings: /.test(await text(page, "budget-status")));
+    await eventually("the image of the plan", async () => /^Settings: /.test(await text(page, "budget-status")));
     const digest = await rest(page);
     const { plan } = await hashOf(page);
     const wanted = new URLSearchParams(plan);
@@ -292,12 +292,12 @@ pageTest(
     const link = await page.evaluate(() => location.href);
     const other = await context.newPage();
     await other.goto(link);
-    await eventually("the plan's words", async () => /^Settings: /.test(await text(other, "budget-status")));
+    await eventually("the status of the plan", async () => /^Settings: /.test(await text(other, "budget-status")));
     assert.equal(await rest(other), digest);
     assert.deepEqual(await axeViolations(other), []);
     await other.getByRole("button", { name: "Reset to automatic" }).click();
     await eventually("no plan", async () => (await hashOf(other)).plan === undefined);
-    await eventually("another picture", async () => (await rest(other)) !== digest);
+    await eventually("another image", async () => (await rest(other)) !== digest);
     assert.equal(await text(other, "budget-status"), "");
   },
   still,
@@ -327,7 +327,7 @@ pageTest(
 );
 
 pageTest(
-  "a missed budget reports the reason, and its picture can be downloaded",
+  "a missed budget reports the reason, and its image can be downloaded",
   "scene=paper&playing=0",
   async (page) => {
     await page.route("**/frame.png?*error=*", async (route) => {
@@ -356,7 +356,7 @@ pageTest(
     assert.deepEqual(await axeViolations(page), []);
     await page.locator("#download").hover();
     const link = await page.locator("#download").getAttribute("href");
-    assert.equal(query(link).get("error"), null, "the plan that it came to");
+    assert.equal(query(link).get("error"), null, "link to the resulting plan");
     await page.getByRole("button", { name: "0.5 % error" }).click();
     await eventually("no budget", async () => (await text(page, "budget-status")) === "");
     assert.equal((await hashOf(page)).error, undefined);
@@ -365,7 +365,7 @@ pageTest(
 );
 
 pageTest(
-  "the link keeps a time budget, and the page reports the time taken",
+  "the link keeps a time budget, and the page reports the used time",
   "playing=0&seconds=0.3",
   async (page) => {
     await eventually("the budget", async () => /^Limit (met|missed): /.test(await text(page, "budget-status")));
@@ -375,11 +375,11 @@ pageTest(
     const status = await text(page, "budget-status");
     await page.evaluate(() => dispatchEvent(new Event("online")));
     await rest(page);
-    assert.equal(await text(page, "budget-status"), status, "of the same picture");
+    assert.equal(await text(page, "budget-status"), status, "status of the same image");
     await page.locator("#stage").hover();
     await page.mouse.wheel(0, 100);
-    await eventually("nothing of another view", async () => (await text(page, "budget-status")) === "");
-    await eventually("its own", async () => (await text(page, "budget-status")) !== "");
+    await eventually("no status for another view", async () => (await text(page, "budget-status")) === "");
+    await eventually("the status of the new view", async () => (await text(page, "budget-status")) !== "");
     await page.getByRole("button", { name: "2 s" }).click();
     await eventually("another budget", async () => (await hashOf(page)).seconds === "2");
     assert.equal(await page.getByRole("button", { name: "2 s" }).getAttribute("aria-pressed"), "true");
@@ -397,7 +397,7 @@ pageTest(
     );
     const make = page.locator("#make-chart");
     await make.click();
-    await eventually("the words", async () =>
+    await eventually("the reason", async () =>
       /The chart failed: Too many jobs\. 2 jobs/.test(await text(page, "stop-note")),
     );
     await page.unroute("**/charts");

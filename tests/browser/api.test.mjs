@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// Responses of the service as the page parses them.
+// Tests how the page parses responses of the service.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";

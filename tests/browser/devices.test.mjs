@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// Page on phones and tablets, with forced colours, and by keyboard only.
+// Tests the page on phones and tablets, with forced colours, and with the keyboard only.
 
 import assert from "node:assert/strict";
 import { after } from "node:test";
@@ -16,7 +16,7 @@ const touch = (width, height) => ({
 });
 
 pageTest(
-  "long figures stay within the width of a phone's stage",
+  "long numbers fit into the width of a phone's stage",
   "playing=0",
   async (page) => {
     await rest(page);
@@ -52,31 +52,31 @@ async function swipe(page, dx, dy) {
 }
 
 pageTest(
-  "on a phone in landscape, a vertical swipe scrolls and a horizontal swipe turns",
+  "on a phone in landscape, a vertical swipe scrolls and a horizontal swipe turns the view",
   "playing=0",
   async (page) => {
     await rest(page);
     await swipe(page, 0, -100);
-    await eventually("the page scrolls", () => page.evaluate(() => scrollY > 50));
+    await eventually("scrolling of the page", () => page.evaluate(() => scrollY > 50));
     await page.waitForTimeout(500); // inertial scrolling ends
     await rest(page);
     const scrolled = await hashOf(page);
     assert.deepEqual([scrolled.az, scrolled.el], ["0", "0"]);
     await page.evaluate(() => scrollTo({ top: 0, behavior: "instant" }));
     await swipe(page, -80, 0);
-    await eventually("the view turns", async () => Number((await hashOf(page)).az) > 20);
+    await eventually("a turn of the view", async () => Number((await hashOf(page)).az) > 20);
     assert.equal(await page.evaluate(() => scrollY), 0);
   },
   touch(740, 360),
 );
 
 pageTest(
-  "on a phone in portrait, a vertical swipe turns",
+  "on a phone in portrait, a vertical swipe turns the view",
   "playing=0",
   async (page) => {
     await rest(page);
     await swipe(page, 0, 60);
-    await eventually("the view rises", async () => Number((await hashOf(page)).el) > 20);
+    await eventually("a larger elevation", async () => Number((await hashOf(page)).el) > 20);
     assert.equal(await page.evaluate(() => scrollY), 0);
   },
   touch(360, 740),
@@ -85,7 +85,7 @@ pageTest(
 for (const [device, options, present, absent] of [
   ["a mouse", {}, /right-drag.*scroll.*Shift/, /finger|pinch/],
   ["a phone", touch(360, 740), /Drag to turn.*two fingers.*pinch/, /shift|ctrl|scroll|right-drag|arrow/i],
-  ["a phone on its side", touch(740, 360), /Drag sideways.*two fingers.*pinch/, /shift|ctrl|scroll|right-drag|arrow/i],
+  ["a phone in landscape", touch(740, 360), /Drag sideways.*two fingers.*pinch/, /shift|ctrl|scroll|right-drag|arrow/i],
 ]) {
   pageTest(
     `the hint names the gestures of ${device}`,
@@ -99,7 +99,7 @@ for (const [device, options, present, absent] of [
   );
 }
 
-// Returns the visible controls that are under 44 x 44 pixels.
+// Returns the visible controls smaller than 44 x 44 pixels.
 const small = (page) =>
   page.evaluate(() =>
     [...document.querySelectorAll("button, a.button, select, input")]
@@ -182,9 +182,9 @@ pageTest("the gallery is one tab stop, and arrow keys move in it", "playing=0", 
   assert.equal(await press("Home"), 0);
   const found = await press("h");
   assert.equal(await options.nth(found).getAttribute("data-name"), "mirrors", "Hall of mirrors");
-  assert.equal(await press("Shift+Tab"), -1, "the stop before is elsewhere");
+  assert.equal(await press("Shift+Tab"), -1, "the previous tab stop is outside of the gallery");
   assert.equal(await press("Tab"), found);
-  assert.equal((await hashOf(page)).scene, "paper", "moving chooses nothing");
+  assert.equal((await hashOf(page)).scene, "paper", "moving the focus selects no scene");
   await page.keyboard.press("Enter");
   await eventually("the scene", async () => (await hashOf(page)).scene === "mirrors");
   assert.equal(await page.locator('#gallery [aria-selected="true"]').getAttribute("data-name"), "mirrors");
@@ -214,7 +214,7 @@ pageTest(
           (part) => part.scrollHeight > part.clientHeight + 1 && getComputedStyle(part).overflowY !== "visible",
         ).length,
     );
-    assert.equal(hidden, 0, "nothing to be scrolled to inside the card");
+    assert.equal(hidden, 0, "the card does not scroll");
   },
   { expected: /status of 422/ },
 );

@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// Contents of the stage from the click on a sample scene, in a browser slowed down four times.
+// Tests what the stage shows after a click on a sample scene, in a browser slowed down four times.
 
 import assert from "node:assert/strict";
 import { existsSync } from "node:fs";
@@ -21,9 +21,9 @@ async function open() {
 }
 
 const firstPicture = (page, name) =>
-  eventually(`a picture of ${name}`, () => page.evaluate(() => window.stageLog.find(({ width }) => width > 0)));
+  eventually(`an image of ${name}`, () => page.evaluate(() => window.stageLog.find(({ width }) => width > 0)));
 
-test("a picked scene shows its thumbnail at once, then a draft, never the former scene", async () => {
+test("a picked scene shows its thumbnail at once, then a draft, never the previous scene", async () => {
   const { page, faults, close } = await open();
   const names = await sceneNames(page);
   assert.ok(names.length >= 30);
@@ -34,7 +34,7 @@ test("a picked scene shows its thumbnail at once, then a draft, never the former
     const log = await page.evaluate(() => window.stageLog);
     assert.deepEqual(new Set(log.map(({ scene }) => scene)), new Set([name]));
     const first = log.findIndex(({ width }) => width > 0);
-    assert.ok(first > 0, `${name}: the picture before is gone in the frame after the click`);
+    assert.ok(first > 0, `${name}: the previous image disappears in the frame after the click`);
     const thumbnails = new Set(log.slice(0, first).map(({ thumbnail }) => thumbnail));
     thumbnails.delete(""); // the thumbnail may still be loading
     assert.ok(
@@ -55,13 +55,13 @@ test("previews and orbit frames have at least a quarter of the stage's width", a
     const widths = (await dragFor(page, 700)).map(([, width]) => width);
     await eventually("frames of the orbit", () => page.evaluate(() => window.pictures.length > 5));
     widths.push(...(await page.evaluate(() => window.pictures.map(([, width]) => width))));
-    assert.ok(Math.min(...widths) >= least, `${name}: ${Math.min(...widths)} pixels of at least ${least}`);
+    assert.ok(Math.min(...widths) >= least, `${name}: ${Math.min(...widths)} pixels, at least ${least} expected`);
   }
   assert.deepEqual(faults, []);
   await close();
 });
 
-test("a path-traced scene is refined pass by pass, and the download equals the picture on the stage", async () => {
+test("a path-traced scene is refined pass by pass, and the download equals the image on the stage", async () => {
   const logProgress = (page) =>
     page.addInitScript(() => {
       window.progress = [];
@@ -91,7 +91,7 @@ test("a path-traced scene is refined pass by pass, and the download equals the p
     const bytes = (context) => context.getImageData(0, 0, bitmap.width, bitmap.height).data.join();
     return canvas.width === bitmap.width && bytes(canvas.getContext("2d")) === bytes(other);
   });
-  assert.ok(same, "the download is the picture on the stage");
+  assert.ok(same, "the download equals the image on the stage");
   assert.deepEqual(faults, []);
   await close();
 });

@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// Files of the page as the service sends them.
+// Tests the files of the page as served by the service.
 
 import assert from "node:assert/strict";
 import { readdirSync, readFileSync } from "node:fs";
@@ -38,16 +38,16 @@ test("a visitor downloads at most 80 kB of compressed files", async () => {
   assert.ok(total <= MAX_COMPRESSED_BYTES, `${total} bytes`);
 });
 
-test("the files are served as they are", async () => {
+test("files are served unchanged", async () => {
   for (const file of files) assert.ok((await fetchRaw(file, {})).bytes.equals(source(file)), file);
 });
 
-test("the policy forbids content of other origins", async () => {
+test("the content security policy forbids content of other origins", async () => {
   const { headers } = await fetchRaw("", {});
   assert.match(headers["content-security-policy"] ?? "", /default-src 'self'/);
 });
 
-// Returns the modules that `file` imports, with theirs.
+// Returns the modules that `file` imports, directly or through others.
 function importsOf(file, found = new Set()) {
   for (const [, name] of source(file)
     .toString()

@@ -1,8 +1,8 @@
 #!/usr/bin/env node
-// Prints a Markdown table of the sample scenes: time from the click to the first picture, and frames per
-// second of a drag and of an orbit.
-// firstPictures.mjs [--size 1440x900] [--slow TIMES] [NAME...]
-// --slow: factor by which the browser's processor is slowed down, not the service's.
+// Prints a Markdown table of the sample scenes: time from the click to the first image, and frames per second
+// of a drag and of an orbit.
+// first-pictures.mjs [--size 1440x900] [--slow TIMES] [NAME...]
+// --slow: factor by which the browser, but not the service, is slowed down.
 
 import { parseArgs } from "node:util";
 import { eventually, openPage, skipWithoutBrowser, startBrowser, startDaemon } from "./support.mjs";
@@ -26,7 +26,7 @@ async function measure(page, name) {
   const stage = await page.locator("#stage").evaluate((each) => each.clientWidth);
   const start = await pick(page, name);
   const since = (entry) => (entry ? String(Math.round(entry.at - start)) : "–");
-  await eventually("a picture", () => page.evaluate(() => window.stageLog.some(({ width: pixels }) => pixels > 0)));
+  await eventually("an image", () => page.evaluate(() => window.stageLog.some(({ width: pixels }) => pixels > 0)));
   const log = await page.evaluate(() => window.stageLog);
   const first = log.find(({ width: pixels }) => pixels > 0);
   const thumbnail = log.find((entry) => entry.thumbnail === `${name}.webp`);
@@ -49,16 +49,7 @@ try {
     before: logStage,
   });
   if (Number(values.slow) > 1) await slowDown(page, Number(values.slow));
-  row([
-    "scene",
-    "thumbnail, ms",
-    "first picture, ms",
-    "its width, pixels",
-    "drag, fps",
-    "width",
-    "orbit, fps",
-    "width",
-  ]);
+  row(["scene", "thumbnail, ms", "first image, ms", "its width, pixels", "drag, fps", "width", "orbit, fps", "width"]);
   row(["---", "--:", "--:", "--:", "--:", "--:", "--:", "--:"]);
   for (const name of positionals.length ? positionals : await sceneNames(page)) await measure(page, name);
 } finally {

@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// Back, forward and edited addresses: the page shows what the address says.
+// Tests Back, Forward and edited URLs: the page must show the state in the URL.
 
 import assert from "node:assert/strict";
 import { after } from "node:test";
@@ -13,7 +13,7 @@ const shows = (page) => page.locator("#stage").getAttribute("data-shows");
 const pick = (page, name) => page.locator(`#gallery button[data-name="${name}"]`).click();
 const frames = (page) => page.locator('#stage[data-shows="stream"]').waitFor();
 
-// Fails unless button, address and stage agree that the view rests.
+// Fails unless button, URL and stage show that the orbit is paused.
 async function assertPaused(page) {
   const before = await rest(page);
   await page.waitForTimeout(700);
@@ -26,7 +26,7 @@ async function assertPaused(page) {
 async function assertPlaying(page) {
   await frames(page);
   const { az } = await hashOf(page);
-  await eventually("a turn", async () => (await hashOf(page)).az !== az);
+  await eventually("a turn of the view", async () => (await hashOf(page)).az !== az);
   assert.equal(await playLabel(page), "Pause");
   assert.equal((await hashOf(page)).playing, "1");
 }
@@ -46,7 +46,7 @@ pageTest("Back to a paused scene pauses the orbit", "scene=paper&playing=0", asy
   await assertPlaying(page);
 });
 
-pageTest("An edited address pauses and plays the same scene", "scene=paper&playing=0", async (page) => {
+pageTest("an edited URL pauses and plays the same scene", "scene=paper&playing=0", async (page) => {
   await rest(page);
   const edit = (from, to) =>
     page.evaluate(([before, now]) => (location.hash = location.hash.replace(before, now)), [from, to]);

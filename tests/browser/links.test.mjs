@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// Links that cannot be shown: the page names the error and offers a way out.
+// Tests links that cannot be shown: the page must name the error and offer alternatives.
 
 import assert from "node:assert/strict";
 import { after } from "node:test";
@@ -57,7 +57,7 @@ pageTest(
 );
 
 pageTest(
-  "an unknown scene clears the former picture",
+  "a link to an unknown scene clears the previous image",
   "playing=0",
   async (page) => {
     await rest(page);
@@ -78,7 +78,7 @@ for (const playing of [0, 1]) {
     ["technique=xx", /technique.*got "xx"/, "Use the scene’s technique"],
     ["samples=65000", /samples.*got 65000/, "Choose samples automatically"],
   ]) {
-    if (playing === 0 && setting.startsWith("samples")) continue; // a picture at rest stays within the limit
+    if (playing === 0 && setting.startsWith("samples")) continue; // a still image stays within the limit
     const [key] = setting.split("=");
     pageTest(
       `a rejected link with ${setting}, playing=${playing}, offers to reset ${key}`,
@@ -97,7 +97,7 @@ for (const playing of [0, 1]) {
 }
 
 pageTest(
-  "choosing a sample drops the rejected settings of the link only",
+  "choosing a sample drops only the rejected settings of the link",
   "technique=xx&playing=0&samples=1",
   async (page) => {
     await button(page, "Choose a sample scene").click();
@@ -106,12 +106,16 @@ pageTest(
     await rest(page);
     assert.equal(await cardOf(page).isVisible(), false);
     const { scene, technique, samples } = await hashOf(page);
-    assert.deepEqual([scene, technique, samples], ["cornell-box", undefined, "1"], "only what was refused is dropped");
+    assert.deepEqual(
+      [scene, technique, samples],
+      ["cornell-box", undefined, "1"],
+      "only the rejected setting is dropped",
+    );
   },
   refused,
 );
 
-pageTest("a link to a view below the floor opens above it", "scene=mirrors&el=-80&playing=0", async (page) => {
+pageTest("a link to a view below the floor opens a view above it", "scene=mirrors&el=-80&playing=0", async (page) => {
   await rest(page);
   const lowest = Number((await hashOf(page)).el);
   assert.ok(lowest > -30 && lowest < 0, `${lowest} degrees`);

@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// Page modules that need no browser.
+// Tests page modules that need no browser.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
@@ -62,24 +62,24 @@ test("a stream truncated inside a frame is a retryable error", async () => {
   assert.equal(seen.length, 1);
 });
 
-const PIXELS = 600; // height of the picture in these tests
+const PIXELS = 600; // image height in these tests, in pixels
 
-// Lets `camera` glide at `rate` frames per second. Returns the frames until it rests. Fails after ten
-// seconds.
+// Lets `camera` glide at `rate` frames per second. Returns the number of frames until it stops. Fails after
+// ten seconds.
 function glide(camera, rate = 60, each = () => {}) {
   for (let frames = 1; frames <= 10 * rate; frames += 1) {
     if (!camera.step(1 / rate, PIXELS)) return frames;
     each();
   }
-  return assert.fail("the glide does not end");
+  return assert.fail("glide takes more than ten seconds");
 }
 
 test("the camera glides to its goal and stops", () => {
   const camera = new OrbitCamera();
   camera.rotate(90, 0);
   assert.equal(camera.step(1 / 60, PIXELS), true);
-  const pixel = (2 / PIXELS) * (180 / Math.PI); // turn that moves the edge of the picture by a pixel
-  near(camera.view.azimuth, 4.5 + pixel, 1e-9, "a twentieth of the way, and a pixel");
+  const pixel = (2 / PIXELS) * (180 / Math.PI); // turn that moves the edge of the image by a pixel
+  near(camera.view.azimuth, 4.5 + pixel, 1e-9, "1/20 of the distance, plus a pixel");
   camera.rotate(0, 30);
   camera.dolly(0.5);
   glide(camera);
@@ -116,7 +116,7 @@ test("a glide moves at least a pixel per frame until it ends", () => {
   }
 });
 
-test("a glide takes the same time at another frame rate", () => {
+test("a glide takes the same time at any frame rate", () => {
   const seconds = [60, 144].map((rate) => {
     const camera = new OrbitCamera();
     camera.rotate(36, 0);
@@ -146,11 +146,11 @@ test("the view stays above the floor", () => {
     assert.equal(camera.goal.elevation, 0);
     camera.useSceneCamera(scene.camera);
     move(camera);
-    assert.ok(eyeHeight(camera.goal) < -1, `${name} where there is no floor`);
+    assert.ok(eyeHeight(camera.goal) < -1, `${name} without a floor`);
   }
 });
 
-test("the floor is an opaque plane perpendicular to up, below the scene's own eye", () => {
+test("the floor is an opaque plane perpendicular to up, below the eye of the scene", () => {
   const camera = { eye: [0, 2, 4], look_at: [0, 0, 0], up: [0, 2, 0] };
   const floor = (plane, materials = { stone: { type: "rough" } }) =>
     floorHeight(
@@ -176,7 +176,7 @@ test("the camera never looks parallel to up", () => {
   assert.ok(Math.abs(camera.goal.elevation + 134.9) < 1e-9);
 });
 
-test("a pan by a fraction of the height moves the target by that fraction of the shown height", () => {
+test("a pan by a fraction of the image height moves the target by this fraction of the visible height", () => {
   const closeTo = (actual, expected) =>
     actual.forEach((value, axis) => assert.ok(Math.abs(value - expected[axis]) < 1e-12, `${actual} ${expected}`));
   const own = { type: "perspective", eye: [0, 1, 4], look_at: [0, 1, 0], up: [0, 3, 0], fov_degrees: 90 };
@@ -187,7 +187,7 @@ test("a pan by a fraction of the height moves the target by that fraction of the
     camera.pan(right, up, fov);
     return camera.goal.pan;
   };
-  closeTo(panned({}, 1, 0.5), [8, 4, 0]); // 2 * 4 m * tan 45 high
+  closeTo(panned({}, 1, 0.5), [8, 4, 0]); // height 2 * 4 m * tan 45
   closeTo(panned({ distance: 2 }, 0, 1), [0, 16, 0]);
   closeTo(panned({ azimuth: 90 }, 1, 0), [0, 0, -8]); // the eye is at +x, its right is -z
   closeTo(panned({ elevation: 60 }, 0, 1), [0, 4, -4 * Math.sqrt(3)]);
@@ -198,14 +198,14 @@ test("a pan by a fraction of the height moves the target by that fraction of the
   closeTo(panned({ camera: { type: "orthographic", height: 3 }, distance: 2 }, 1, 0), [6, 0, 0]);
 });
 
-test("a pan during a glide moves by the scale of the goal", () => {
+test("a pan during a glide uses the scale of the goal", () => {
   const camera = new OrbitCamera();
   camera.pan(1, 0);
   const [metres] = camera.goal.pan;
   assert.equal(camera.dolly(0.5), 0.5);
   camera.pan(1, 0);
-  assert.equal(camera.goal.pan[0], 1.5 * metres, "by what the goal shows, not by what is seen yet");
-  assert.equal(camera.dolly(0.01), 0.04, "from half to a fiftieth, the nearest");
+  assert.equal(camera.goal.pan[0], 1.5 * metres, "scale of the goal, not of the current view");
+  assert.equal(camera.dolly(0.01), 0.04, "from 1/2 to 1/50, the minimum");
 });
 
 test("the camera glides to a pan and back on reset", () => {
@@ -213,7 +213,7 @@ test("the camera glides to a pan and back on reset", () => {
   camera.pan(1, 0);
   const goal = camera.goal.pan[0];
   assert.equal(camera.step(1 / 60, PIXELS), true);
-  near(camera.view.pan[0] / goal, 1 / 20 + 1 / PIXELS, 1e-9, "a twentieth of the way, and a pixel");
+  near(camera.view.pan[0] / goal, 1 / 20 + 1 / PIXELS, 1e-9, "1/20 of the distance, plus a pixel");
   glide(camera);
   assert.equal(camera.view.pan[0], goal);
   camera.reset();
@@ -222,7 +222,7 @@ test("the camera glides to a pan and back on reset", () => {
   assert.deepEqual(camera.view.pan, [0, 0, 0]);
 });
 
-test("reset turns by the shorter way", () => {
+test("reset turns in the shorter direction", () => {
   const camera = new OrbitCamera();
   camera.jump({ azimuth: 350, elevation: 10, distance: 2 });
   camera.reset();
@@ -255,7 +255,7 @@ test("offsetOf() and placeOf() are inverses", () => {
   }
 });
 
-test("a hash restores settings and view, and invalid values are ignored", () => {
+test("a URL hash restores settings and view, and invalid values are ignored", () => {
   const usual = parseHash("");
   const settings = { ...usual.settings, ref: "mirror", playing: false, technique: "raycast", samples: 16 };
   const view = { azimuth: 12.5, elevation: -3, distance: 0.5, pan: [0.5, -1e-7, 12345], time: 1.25 };
@@ -267,7 +267,7 @@ test("a hash restores settings and view, and invalid values are ignored", () => 
   assert.deepEqual(odd, usual);
 });
 
-test("a picture fits its box and the limits of the service", () => {
+test("an image fits its box and the limits of the service", () => {
   const scene = { width: 600, height: 600, camera: { type: "perspective", fov_degrees: 90 } };
   const limits = { side: 4096, pixels: 2 ** 24 };
   const size = (more) =>
@@ -294,7 +294,7 @@ test("a picture fits its box and the limits of the service", () => {
   assert.deepEqual(within({ width: 8192, height: 100 }, 4096, 2 ** 24), { width: 4096, height: 50 });
 });
 
-test("equal views have equal addresses, and commands are safe in a shell", () => {
+test("equal views have equal URLs, and commands are quoted for the shell", () => {
   const picture = {
     id: "ab12",
     azimuth: 10.001,
@@ -314,7 +314,7 @@ test("equal views have equal addresses, and commands are safe in a shell", () =>
   );
 });
 
-test("a job body has the options of the picture's address", () => {
+test("a job body has the options of the image's URL", () => {
   const view = { id: "ab", azimuth: 10.001, elevation: 0, distance: 2, width: 60, height: 40 };
   assert.deepEqual(JSON.parse(JSON.stringify(jobBody({ ...view, samples: 16 }))), {
     scene_id: "ab",
@@ -345,7 +345,7 @@ test('progress marks an estimated time with "about"', () => {
   );
   assert.equal(progressText({ ...at, secondsLeft: 2.1 }), "16 of 64 samples · about 3 s left");
   assert.equal(progressText({ ...at, secondsLeft: NaN }), "16 of 64 samples");
-  assert.equal(progressText({ ...at, secondsLeft: -1 }), "16 of 64 samples", "a guess that came to nothing");
+  assert.equal(progressText({ ...at, secondsLeft: -1 }), "16 of 64 samples", "an estimate that has passed");
   assert.equal(progressText({ ...at, part: 0, secondsLeft: 600 }), "16 of 64 samples · 0 % · 10 min left");
   assert.equal(progressText({}), "");
 });

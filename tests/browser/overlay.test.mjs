@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// Overlay pictures and budgets, interrupted by orbits, other scenes, other keys and typing.
+// Tests overlay images and budgets during orbits, scene changes, key presses and typing.
 
 import assert from "node:assert/strict";
 import { after } from "node:test";
@@ -109,7 +109,7 @@ pageTest("an orbit ignores budgets, and choosing one pauses it", "seconds=0.3&sp
 });
 
 pageTest(
-  "until a budgeted picture is rendered, the error map is that of the picture without budget",
+  "until an image with a budget is rendered, the error map is that of the image without it",
   "playing=0",
   async (page) => {
     await rest(page);

@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// Frame rate and quality of the pictures that the page requests.
+// Tests frame rate and quality of the images that the page requests.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
@@ -10,8 +10,8 @@ const { Pace } = await load("pace.js");
 const { passes, qualityLevels, samplesAtRest } = await load("quality.js");
 const { Refiner } = await load("refine.js");
 
-// Plays an orbit for `seconds` whose frames take `frameMs(level, now)`. `costs`: relative costs of the
-// levels. Returns its pace and the `starts` of its streams, each [time, level, fps].
+// Plays an orbit for `seconds` whose frames take `frameMs(level, now)`. `costs` are the relative costs of the
+// levels. Returns the pace and the `starts` of its streams, each [time, level, fps].
 function paced(frameMs, costs, seconds, speed = 20) {
   const pace = new Pace();
   const starts = [[0, pace.level, pace.fps]];
@@ -109,7 +109,7 @@ test("quality levels reduce samples first, then size, and keep the user's choice
   assert.deepEqual(
     qualityLevels({ samples: 16, size: "half" }).at(-1),
     { part: 0.5, samples: 16 },
-    "of half the stage",
+    "half of the stage",
   );
   assert.deepEqual(qualityLevels({ samples: 0, size: "1280x720", own: 2 }), [
     { part: 1, samples: 2 },
@@ -117,11 +117,11 @@ test("quality levels reduce samples first, then size, and keep the user's choice
   ]);
 });
 
-test("render times are estimated from the last picture of the scene", () => {
+test("render times are estimated from the last image of the scene", () => {
   const cost = new Cost();
   const picture = { id: "ab", technique: "", width: 100, height: 100, samples: 1 };
   const pictures = [4, 2, 1].map((samples) => ({ ...picture, samples }));
-  assert.equal(cost.firstWithin(pictures, 1e9), 2, "nothing is known");
+  assert.equal(cost.firstWithin(pictures, 1e9), 2, "without an estimate");
   cost.note(picture, 50);
   assert.deepEqual(
     [300, 150, 60, 10].map((ms) => cost.firstWithin(pictures, ms)),
@@ -131,7 +131,7 @@ test("render times are estimated from the last picture of the scene", () => {
   assert.equal(cost.expectedMs({ ...picture, width: 200 }), 100);
 });
 
-test("the picture at rest has the chosen samples, else the scene's or 64", () => {
+test("the still image has the chosen samples, otherwise those of the scene or 64", () => {
   assert.equal(samplesAtRest(0, 1, 4096), 64);
   assert.equal(samplesAtRest(0, 256, 4096), 256);
   assert.equal(samplesAtRest(0, 1, 32), 32);
@@ -144,12 +144,12 @@ test("each pass has half the samples of the next", () => {
   assert.deepEqual(passes(1), [1]);
 });
 
-test("refinement ends with the finest picture within the time limit unless samples were chosen", () => {
+test("refinement ends with the finest image within the time limit unless samples were chosen", () => {
   const cost = new Cost();
   const refiner = new Refiner(cost);
   const picture = { id: "ab", technique: "", width: 10, height: 10, samples: 64 };
   const last = (isRequested = false) => refiner.last(picture, isRequested).samples;
-  assert.equal(last(), 64, "as long as nothing is known");
+  assert.equal(last(), 64, "without an estimate");
   cost.note({ ...picture, samples: 1 }, 400);
   assert.equal(last(), 32);
   assert.equal(last(true), 64);

@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// Page in Chromium with its own daemon: viewing, moving, options, warnings.
+// Tests the page in Chromium with its own daemon: viewing, moving, options, warnings.
 
 import assert from "node:assert/strict";
 import { after } from "node:test";
@@ -21,7 +21,7 @@ const { daemon, browser } = await startBoth(after);
 
 const pageTest = pageTests(browser, daemon);
 
-pageTest("the page opens with an orbit of the paper's scene", "", async (page) => {
+pageTest("the page opens with an orbit of the scene `paper`", "", async (page) => {
   const seen = new Set();
   await eventually("five different frames", async () => seen.add(await canvasDigest(page)).size >= 5);
   const state = await eventually("a link to this view", async () => {
@@ -46,7 +46,7 @@ pageTest("the motion of a scene plays and pauses with the orbit", "scene=orrery&
   await page.locator("#stage").focus();
   await page.keyboard.press("Space");
   await eventually("frames again", async () => (await canvasDigest(page)) !== still);
-  await eventually("time goes on", async () => Number((await hashOf(page)).t) > time);
+  await eventually("a later time of the motion", async () => Number((await hashOf(page)).t) > time);
 });
 
 pageTest("pause stops the orbit and Space starts it again", "", async (page) => {
@@ -71,7 +71,7 @@ pageTest("a drag over the stage's height turns the view by 360 degrees", "playin
   near(state.el, (30 * 360) / height, 0.2, "elevation");
   const box = await page.locator("#stage").boundingBox();
   const width = Number(afterDrag.split("x")[0]);
-  near(width, box.width, 1, "width of the picture at rest");
+  near(width, box.width, 1, "width of the still image");
 });
 
 pageTest(
@@ -80,7 +80,8 @@ pageTest(
   async (page) => {
     await rest(page);
     const { width } = await page.locator("#stage").boundingBox();
-    // Counts requests inside the page: the driver may report a request before the end of the last one.
+    // Counts requests inside the page, because the driver may report a request before the end of the previous
+    // one.
     await page.evaluate(() => {
       const realFetch = window.fetch;
       window.previews = [];
@@ -100,7 +101,8 @@ pageTest(
     });
     await page.evaluate(() => {
       const button = document.querySelector('[data-do="right"]');
-      for (let n = 0; n < 4; n += 1) button.click(); // all at once, so that the view does not rest in between
+      // Without pauses, so that the view does not rest in between.
+      for (let n = 0; n < 4; n += 1) button.click();
     });
     const atRest = await rest(page);
     const previews = await page.evaluate(() => window.previews);
@@ -153,7 +155,7 @@ pageTest("a drag interrupts the orbit, which continues after it", "speed=30", as
     const hash = await hashOf(page);
     return Math.abs(Number(hash.el) - (40 * 360) / height) < 0.06 && hash;
   });
-  await eventually("the orbit goes on", async () => {
+  await eventually("more of the orbit", async () => {
     const hash = await hashOf(page);
     return hash.el === state.el && Number(hash.az) > Number(state.az) + 5;
   });
@@ -167,7 +169,7 @@ pageTest(
     await eventually("frames", async () => Number((await hashOf(page)).az) > 0);
     let held = "";
     await drag(page, 50, 0, async () => (held = await rest(page)));
-    await eventually("frames after it", async () => (await canvasDigest(page)) !== held);
+    await eventually("frames after the drag", async () => (await canvasDigest(page)) !== held);
   },
   { reducedMotion: "reduce" },
 );
@@ -184,7 +186,7 @@ pageTest(
     };
     await rest(page);
     await page.mouse.move(x, y);
-    near((await stateAfter(() => page.mouse.wheel(0, 100))).dist, 1 / 0.95, 0.002, "one notch away");
+    near((await stateAfter(() => page.mouse.wheel(0, 100))).dist, 1 / 0.95, 0.002, "one notch away from the target");
     near((await stateAfter(() => page.mouse.wheel(0, -100))).dist, 1, 0.002, "and back");
     await page.locator("#stage").focus();
     near((await stateAfter(() => page.keyboard.press("ArrowRight"))).az, 22.5, 0.11, "arrow right");
@@ -208,7 +210,7 @@ pageTest(
 );
 
 pageTest(
-  "a pinch zooms and a drag with one finger turns",
+  "a pinch zooms and a drag with one finger turns the view",
   "playing=0",
   async (page, context) => {
     await rest(page);
@@ -241,7 +243,7 @@ pageTest(
 );
 
 pageTest(
-  "a link opens its view, and Back returns to the former scene",
+  "a link opens its view, and Back returns to the previous scene",
   "scene=paper&az=40&el=10&dist=1.2&speed=45&playing=0&samples=4",
   async (page) => {
     await rest(page);
@@ -321,7 +323,7 @@ for (const colorScheme of ["light", "dark"]) {
         );
         await page.locator("#size").selectOption("half"); // smaller, so that it does not become a job
         await page.locator("#stage-problem").waitFor({ state: "visible" });
-        await check("the picture's error");
+        await check("error of the image");
         await page.unroute("**/frame.png?*");
         await page.route("**/frame.png?*", () => {}); // never responds
         await page.locator("#size").selectOption("fit");
@@ -337,7 +339,7 @@ for (const colorScheme of ["light", "dark"]) {
 
 const WARNING = "Nothing is hit; The camera is inside an object";
 
-// Adds a warning to the pictures for whose URL `ask` returns true.
+// Adds a warning to responses if `ask(url)` is true.
 async function warn(page, ask) {
   await page.route(/(frame\.png|orbit)\?/, async (route) => {
     if (!ask(new URL(route.request().url()))) return route.continue();
@@ -346,7 +348,7 @@ async function warn(page, ask) {
   });
 }
 
-pageTest("the warning of a picture is shown under the stage until the next picture", "playing=0", async (page) => {
+pageTest("the warning of an image is shown under the stage until the next image", "playing=0", async (page) => {
   await rest(page);
   const line = page.locator("#warning");
   assert.equal(await line.getAttribute("role"), "status");
@@ -357,7 +359,7 @@ pageTest("the warning of a picture is shown under the stage until the next pictu
   await rest(page);
   await eventually("the warning", async () => (await line.textContent()) === `Warning: ${WARNING}`);
   const box = await line.boundingBox();
-  assert.ok(box.y >= stage.y + stage.height && box.height > 10, "beneath the stage");
+  assert.ok(box.y >= stage.y + stage.height && box.height > 10, "the warning is below the stage");
   assert.deepEqual(await page.locator("#stage").boundingBox(), stage, "the stage keeps its size");
   assert.deepEqual(await axeViolations(page), []);
   await page.locator('[data-do="reset"]').click();
@@ -369,7 +371,7 @@ pageTest("the warning of an orbit is shown under the stage", "playing=0", async 
   await rest(page);
   await page.route(/orbit\?/, async (route) => {
     const url = new URL(route.request().url());
-    url.searchParams.set("frames", "2"); // the response is passed on once it is complete
+    url.searchParams.set("frames", "2"); // the response is forwarded once it is complete
     const response = await route.fetch({ url: url.href });
     return route.fulfill({ response, headers: { ...response.headers(), "orrery-warning": WARNING } });
   });

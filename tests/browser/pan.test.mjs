@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// Panning: points at the target's distance stay under the pointer in every gesture.
+// Tests panning. Points at the distance of the target must stay under the pointer in every gesture.
 
 import assert from "node:assert/strict";
 import { after } from "node:test";
@@ -8,7 +8,7 @@ import { drag, eventually, hashOf, middle, near, pageTests, rest, startBoth } fr
 const { daemon, browser } = await startBoth(after);
 const pageTest = pageTests(browser, daemon);
 
-// Scene with a small white ball at the look-at point, on black.
+// Scene with a small white ball at the look-at point, on a black background.
 const white = [1, 1, 1];
 const ball = (camera) =>
   JSON.stringify({
@@ -67,7 +67,7 @@ pageTest(
   async (page) => {
     await rest(page);
     await openBall(page, {}, "az=50&el=20&dist=1.5");
-    await at(page, 0, 0, "at first");
+    await at(page, 0, 0, "initially");
     await drag(page, 80, 40, undefined, "right");
     await at(page, 80, 40, "right button");
     for (const key of ["Shift", "Control", "Meta"]) {
@@ -79,14 +79,14 @@ pageTest(
     }
     const { pan, az } = await hashOf(page);
     assert.match(pan, /^-?[\d.e-]+,-?[\d.e-]+,-?[\d.e-]+$/);
-    assert.equal(az, "50", "a pan does not turn");
+    assert.equal(az, "50", "a pan does not turn the view");
     const link = await page.locator("#download").evaluate((link) => {
       link.dispatchEvent(new Event("focus"));
       return new URL(link.href).searchParams.get("pan");
     });
     assert.equal(link.split(",").length, 3);
     await drag(page, 100, 0);
-    await at(page, 80, 40, "turned about the target, the ball goes elsewhere").then(
+    await at(page, 80, 40, "turned about the moved target").then(
       () => assert.fail("the view turned about the ball and not about the moved target"),
       () => {},
     );
@@ -109,7 +109,7 @@ pageTest(
     const panned = await hashOf(page);
     await page.locator("#gallery button").nth(1).click();
     await rest(page);
-    assert.equal((await hashOf(page)).pan, undefined, "another scene starts from its own view");
+    assert.equal((await hashOf(page)).pan, undefined, "another scene starts with its own view");
     await page.goBack();
     await openedBall(page);
     assert.equal((await hashOf(page)).pan, panned.pan);
@@ -172,7 +172,7 @@ pageTest(
         [40 + 60 * part, 30 * part],
       ]);
     await touch("touchEnd", []);
-    await at(page, 60, 30, "moved together");
+    await at(page, 60, 30, "both fingers moved");
     near((await hashOf(page)).dist, 1, 0.002, "distance");
     await touch("touchStart", [
       [20, 30],

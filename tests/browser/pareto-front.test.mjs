@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// Page modules for charts and error bounds that need no browser.
+// Tests page modules for charts and error bounds that need no browser.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
@@ -26,15 +26,15 @@ const point = (cpuMs, rmse, more = {}) => ({
   ...more,
 });
 
-test("each stop is more accurate than every cheaper one, and its place is the logarithm of its cost", () => {
+test("each stop is more accurate than all cheaper ones, and its place is the logarithm of its cost", () => {
   const points = [point(100, 0.01), point(1, 0.5), point(10, 0.1), point(12, 0.11)];
   const stops = stopsOf({ front: [1, 2, 3, 0], points, noise_floor: 0.001 });
   assert.deepEqual(
     stops.map((stop) => points.indexOf(stop.point)),
     [1, 2, 0],
-    "the third costs more than the second and is farther off",
+    "the point at 12 ms costs more than that at 10 ms and has a larger error",
   );
-  for (const [at, place] of [0, 0.5, 1].entries()) near(stops[at].place, place, 1e-9, "its place");
+  for (const [at, place] of [0, 0.5, 1].entries()) near(stops[at].place, place, 1e-9, "place of the stop");
   assert.deepEqual(
     [0, 0.2, 0.3, 0.74, 0.76, 1].map((place) => stopAt(stops, place)),
     [0, 0, 1, 1, 2, 2],
@@ -43,11 +43,11 @@ test("each stop is more accurate than every cheaper one, and its place is the lo
   assert.equal(
     stopsOf({ front: [1, 2, 0], points, noise_floor: 0.2 }).length,
     2,
-    "nobody knows which is nearer below the floor",
+    "errors below the noise floor cannot be compared",
   );
 });
 
-test("the line of a point has its time and error", () => {
+test("the text of a point has its time and error", () => {
   assert.equal(
     lineOf(point(80, 0.0036)),
     "0.8 s, error ≤ 0.004 (95 % confidence), whitted, depth 5, 16 samples, float",
@@ -71,7 +71,7 @@ test("the plan of a link has no view and size", () => {
   assert.equal(parseHash("#seconds=9999").settings.seconds, 60);
 });
 
-test("addresses and jobs have the plan's options and budgets", () => {
+test("URLs and jobs have the options and budgets of the plan", () => {
   const picture = { id: "s", azimuth: 1, elevation: 2, distance: 1, pan: [0, 0, 0], width: 8, height: 6, samples: 16 };
   const planned = { ...picture, technique: "path", more: "precision=float&max_depth=3" };
   assert.match(frameUrl(planned), /technique=path&samples=16&precision=float&max_depth=3$/);
@@ -92,7 +92,7 @@ test("addresses and jobs have the plan's options and budgets", () => {
   assert.equal(elsewhere, "/v1/scenes/s/frame.png?max_depth=3&width=320&time=1&azimuth=9");
 });
 
-test("boundText() describes the error bound of a picture", () => {
+test("boundText() describes the error bound of an image", () => {
   const header =
     'rms=unknown;kind=unknown;max=unknown;because="precision, caustics";known=0.0031;known-kind=estimated;known-max=unknown';
   assert.equal(

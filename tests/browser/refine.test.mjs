@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// Refinement of the picture at rest: passes, progress and cancellation by input. Jobs are simulated.
+// Tests refinement of the still image: passes, progress and cancellation by input. Jobs are simulated.
 
 import assert from "node:assert/strict";
 import { after } from "node:test";
@@ -13,7 +13,8 @@ const isFrame = (url) => url.pathname.endsWith("/frame.png");
 const isRefinement = (url) => url.pathname.endsWith("/refinement");
 const samplesOf = (url) => Number(url.searchParams.get("samples"));
 
-// Passes pictures on as if a full-size sample took `ms`. Returns the list of samples of full-size requests.
+// Forwards images as if each sample in full size took `ms` milliseconds. Returns the list of the samples of
+// full-size requests.
 async function watch(page, ms = 1) {
   const requested = [];
   await page.route(isFrame, async (route) => {
@@ -50,7 +51,7 @@ function bodyOf(frames) {
   );
 }
 
-// Passes refinements on through `change(frames)`. Returns the list of requests as {samples, passes}.
+// Forwards refinements after change(frames). Returns the list of requests as {samples, passes}.
 async function watchRefinements(page, change = (frames) => frames) {
   const requested = [];
   await page.route(isRefinement, async (route) => {
@@ -76,7 +77,7 @@ const progressTexts = (page) =>
   });
 
 pageTest(
-  "one stream refines the picture at rest to 64 or the chosen number of samples",
+  "one stream refines the still image to 64 or the chosen number of samples",
   "playing=0&samples=1",
   async (page) => {
     const coarse = await rest(page);
@@ -91,11 +92,11 @@ pageTest(
     const errorOf = (text) => /^\d+ of 64 samples · error ([\d.e-]+)/.exec(text)?.[1];
     const errors = (await progress.jsonValue()).map(errorOf).filter(Boolean);
     assert.ok(errors.length >= 5, errors.join());
-    assert.ok(Number(errors.at(-1)) < Number(errors[0]) / 4, `the error falls: ${errors}`);
+    assert.ok(Number(errors.at(-1)) < Number(errors[0]) / 4, `the error decreases: ${errors}`);
     await page.locator("#samples").selectOption("16");
     await eventually("16 samples", async () => refined.length === 2);
     await rest(page);
-    assert.deepEqual(refined[1], { samples: 16, passes: [16] }, "the service has kept that pass");
+    assert.deepEqual(refined[1], { samples: 16, passes: [16] }, "the service has cached this pass");
     await page.route(isFrame, (route) => route.fulfill({ status: 429, json: { title: "Too many requests" } }));
     await lookElsewhere(page);
     await eventually("another view", async () => refined.length === 3);
@@ -141,13 +142,13 @@ pageTest(
     await eventually("an estimate", async () =>
       /^16 of 64 samples · error 0\.\d+ · about \d+ s left$/.test((await bar.getAttribute("aria-valuetext")) ?? ""),
     );
-    assert.equal(await bar.getAttribute("aria-valuenow"), null, "nothing was measured");
+    assert.equal(await bar.getAttribute("aria-valuenow"), null, "an estimated time has no value");
     assert.equal(await page.locator("#progress").textContent(), await bar.getAttribute("aria-valuetext"));
     const stopped = await page.evaluate(() => {
       document.getElementById("stage").dispatchEvent(new WheelEvent("wheel", { deltaY: 100, cancelable: true }));
       return window.signals.at(-1).aborted;
     });
-    assert.equal(stopped, true, "at once, not only when the view rests again");
+    assert.equal(stopped, true, "cancelled before the view rests again");
   },
   still,
 );
@@ -186,7 +187,8 @@ async function playJobs(page) {
     jobs.deleted.push(route.request().method());
     return route.fulfill({ status: 204 });
   });
-  // All events come in one body. The page must read them in turn, and reject a body that lacks the last one.
+  // All events are in one body. The page must process them in order and reject a body without the final
+  // event.
   await page.route("**/v1/jobs/j1/events", (route) => {
     const lines = jobs.events.map(
       ([name, state], id) => `id: ${id}\nevent: ${name}\ndata: ${JSON.stringify(at(state))}\n\n`,
@@ -197,7 +199,7 @@ async function playJobs(page) {
 }
 
 pageTest(
-  "a picture that exceeds the request limit is rendered as a job with progress",
+  "an image that exceeds the request limit is rendered as a job with progress",
   "playing=0&samples=1&az=30",
   async (page) => {
     const coarse = await rest(page);
@@ -235,7 +237,7 @@ pageTest(
     const texts = (await progress.jsonValue()).map((pair) => pair.join(" "));
     assert.ok(texts.includes("25 1 of 16 samples · 25 % · 40 s left"), texts.join("\n"));
     assert.ok(texts.includes("43 1 of 16 samples · 43 % · 3 s left"), texts.join("\n"));
-    assert.deepEqual(jobs.deleted, [], "a job that is done is not cancelled");
+    assert.deepEqual(jobs.deleted, [], "a finished job is not cancelled");
     assert.equal(await page.getByRole("progressbar").isVisible(), false);
   },
   { ...still, expected: /status of 422/ },
@@ -255,7 +257,7 @@ pageTest(
     await page.locator("#samples").selectOption("4");
     await eventually("a job", async () => jobs.posted.length === 1);
     await drag(page, 40, 0);
-    await eventually("its end", async () => jobs.deleted.length >= 1);
+    await eventually("the end of the job", async () => jobs.deleted.length >= 1);
     assert.deepEqual(new Set(jobs.deleted), new Set(["DELETE"]));
   },
   { ...still, expected: /status of 422/ },
@@ -282,7 +284,7 @@ pageTest(
   { ...still, expected: /status of 422/ },
 );
 
-pageTest("finer pictures fade in", "playing=0&samples=1", async (page) => {
+pageTest("finer images fade in", "playing=0&samples=1", async (page) => {
   const coarse = await rest(page);
   const seen = await page.evaluateHandle(() => {
     const stage = document.getElementById("stage");
@@ -291,7 +293,7 @@ pageTest("finer pictures fade in", "playing=0&samples=1", async (page) => {
     return fading;
   });
   await page.locator("#samples").selectOption("4");
-  await eventually("the finer picture", async () => (await rest(page)) !== coarse);
+  await eventually("the finer image", async () => (await rest(page)) !== coarse);
   assert.ok((await seen.jsonValue()).includes(true));
-  assert.equal(await canvasDigest(page), await rest(page), "it stays once it is there");
+  assert.equal(await canvasDigest(page), await rest(page), "the image does not change after the fade");
 });

@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// Pasted scenes, and the page after a lost connection, an eviction, or in a hidden tab.
+// Tests pasted scenes, and the page after a lost connection, after an eviction, and in a hidden tab.
 
 import assert from "node:assert/strict";
 import { after, test } from "node:test";
@@ -70,11 +70,11 @@ daemonTest(
     await card.locator("button.place").click();
     const caret = await page.locator("#text").evaluate((field) => field.selectionStart);
     assert.ok(caret >= 18 && caret <= 31, `the caret is at ${caret}`);
-    assert.equal(await canvasDigest(page), before, "the picture stays");
+    assert.equal(await canvasDigest(page), before, "the image does not change");
   },
 );
 
-daemonTest("typing marks the lines with errors and applies nothing", "playing=0&samples=1", async (page) => {
+daemonTest("typing marks the lines with errors but does not apply the text", "playing=0&samples=1", async (page) => {
   const before = await rest(page);
   const hash = await hashOf(page);
   const [card, text, wrong] = ["#text-problem", "#text", "#lines .wrong"].map((name) => page.locator(name));
@@ -110,7 +110,8 @@ daemonTest("a late response to an older text is dropped", "playing=0&samples=1",
   const good = await page.locator("#text").inputValue();
   const held = [];
   await page.route("**/v1/scenes", (route) => {
-    const isCheck = /"radius": (-77|0\.75)/.test(route.request().postData()); // others: gallery
+    // Other requests are from the gallery.
+    const isCheck = /"radius": (-77|0\.75)/.test(route.request().postData());
     return isCheck ? void held.push(route) : route.continue();
   });
   await page.locator("#text").fill(good.replace(/"radius": 0\.5/, '"radius": -77'));
@@ -150,10 +151,10 @@ daemonTest("line numbers follow the scrolling of a long text", "playing=0&sample
   assert.ok(Math.abs(offset) <= 1, `the last number is ${offset} pixels from its line`);
 });
 
-daemonTest("a pasted scene is shown, and Back returns to the former one", "playing=0&samples=1", async (page) => {
+daemonTest("a pasted scene is shown, and Back returns to the previous one", "playing=0&samples=1", async (page) => {
   const before = await rest(page);
   await apply(page, (text) => text.replace(/"radius": 0\.5/, '"radius": 0.25'));
-  await eventually("another picture", async () => (await canvasDigest(page)) !== before);
+  await eventually("another image", async () => (await canvasDigest(page)) !== before);
   assert.match((await hashOf(page)).scene, /^[0-9a-f]{64}$/);
   assert.equal(await page.locator("#text-problem").isVisible(), false);
   const own = await rest(page);
@@ -185,12 +186,12 @@ daemonTest("an evicted scene is posted again", "playing=0&samples=1", async (pag
   await fetch(daemon.url + scene, { method: "DELETE" });
   assert.equal((await fetch(daemon.url + scene)).status, 404);
   await page.locator("#size").selectOption("1280x720");
-  await eventually("a new picture", async () => (await canvasDigest(page)).startsWith("1280x720 "));
+  await eventually("a new image", async () => (await canvasDigest(page)).startsWith("1280x720 "));
   await page.locator("#size").selectOption("fit");
-  await eventually("the first picture", async () => (await canvasDigest(page)) === before);
+  await eventually("the first image", async () => (await canvasDigest(page)) === before);
 });
 
-daemonTest("the page reports a stopped service and continues when it is back", "", async (page, daemon) => {
+daemonTest("the page reports a stopped service and continues when it runs again", "", async (page, daemon) => {
   await eventually("frames", async () => Number((await hashOf(page)).az) > 0);
   await daemon.stop();
   const notice = page.locator("#notice");
@@ -240,7 +241,7 @@ daemonTest("the stage stays empty while a scene is being opened", "scene=paper&p
 });
 
 daemonTest(
-  "Back from a scene that failed to open selects the former scene in the gallery",
+  "Back from a scene that failed to open selects the previous scene in the gallery",
   "scene=paper&playing=0&samples=1",
   async (page) => {
     await rest(page);
@@ -279,8 +280,8 @@ daemonTest(
 daemonTest("a late repost does not replace the scene picked last", "scene=paper&playing=0&samples=1", async (page) => {
   await rest(page);
   await page.route(/refinement.*samples=4/, (route) => route.fulfill({ status: 404, body: "{}" }), { times: 1 });
-  await onPost(page, "The paper's scene", late);
-  const again = page.waitForRequest((request) => request.postData()?.includes("The paper's scene"));
+  await onPost(page, "Mirror floor", late);
+  const again = page.waitForRequest((request) => request.postData()?.includes("Mirror floor"));
   await page.locator("#samples").selectOption("4");
   await again;
   await pick(page, "glass");

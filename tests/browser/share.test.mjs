@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// Sharing: the download and the copied command yield the picture on the canvas.
+// Tests that the download and the copied command produce the image on the canvas.
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
@@ -22,7 +22,7 @@ async function copiedUrl(page) {
   return url;
 }
 
-// Returns whether the canvas shows the pixels of a PNG.
+// Returns true if the canvas shows the pixels of a PNG.
 const shows = (page, png) =>
   page.evaluate(async (base64) => {
     const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
@@ -45,7 +45,7 @@ const linkOf = (page) =>
 const clipboard = { permissions: ["clipboard-read", "clipboard-write"] };
 
 for (const [what, view, name, options] of [
-  ["at the scene's own settings", "scene=paper&az=30", "paper-30-0.png", {}],
+  ["with the settings of the scene", "scene=paper&az=30", "paper-30-0.png", {}],
   [
     "with every setting changed",
     "scene=orrery&az=20&el=5&dist=1.2&pan=0.1,0,0.2&t=1.5&size=half&technique=raycast",
@@ -54,34 +54,34 @@ for (const [what, view, name, options] of [
   ],
 ]) {
   pageTest(
-    `download and curl command yield the refined picture, ${what}`,
+    `download and curl command produce the refined image, ${what}`,
     `${view}&playing=0&samples=0`,
     async (page) => {
       await rest(page);
       const file = await download(page);
       assert.equal(file.name, name);
-      assert.ok(await shows(page, file.bytes), "the pixels of the canvas");
+      assert.ok(await shows(page, file.bytes), "the download has the pixels of the canvas");
       const url = await copiedUrl(page);
       assert.ok(url.startsWith(daemon.url));
       assert.equal(samplesOf(url), "64");
       const response = await fetch(url);
       assert.equal(response.headers.get("content-type"), "image/png");
-      assert.ok(file.bytes.equals(Buffer.from(await response.arrayBuffer())), "the same bytes by the command");
+      assert.ok(file.bytes.equals(Buffer.from(await response.arrayBuffer())), "the command returns the same bytes");
     },
     { ...clipboard, ...options },
   );
 }
 
-pageTest("during refinement, the download is the picture on the stage", "playing=0&samples=1", async (page) => {
+pageTest("during refinement, the download is the image on the stage", "playing=0&samples=1", async (page) => {
   await rest(page);
   await holdRefinement(page, 4);
   await page.locator("#samples").selectOption("64");
   await eventually("4 samples", async () => samplesOf(await linkOf(page)) === "4");
   const { bytes } = await download(page);
-  assert.ok(await eventually("its pixels, once it has faded in", () => shows(page, bytes)));
+  assert.ok(await eventually("the pixels of the image after the fade", () => shows(page, bytes)));
 });
 
-pageTest("while the view moves, the download is the picture at rest", "samples=16&speed=1", async (page) => {
+pageTest("while the view moves, the download is the still image", "samples=16&speed=1", async (page) => {
   await page.locator('#stage[data-shows="stream"]').waitFor();
   assert.equal(samplesOf(await linkOf(page)), "16");
   const ahead = await page.evaluate(() => {

@@ -1,10 +1,10 @@
-// Log of the stage in each painted frame, for drafts.test.mjs and firstPictures.mjs.
+// Log of the stage in each painted frame, for drafts.test.mjs and first-pictures.mjs.
 
 import { middle } from "./support.mjs";
 
-// Starts the log. Requires a page that is not open yet. Adds to window.stageLog, for each painted frame,
-// {at, scene, thumbnail, width}: time in ms, scene of the stage, file of the visible thumbnail or "", and
-// width of the visible picture or 0. Adds to window.pictures [time, width] of each drawn picture.
+// Starts the log of a page that is not open yet. Adds to window.stageLog, for each painted frame, {at, scene,
+// thumbnail, width}: time in ms, scene of the stage, file of the visible thumbnail or "", and width of the
+// visible image or 0. Adds to window.pictures [time, width] of each drawn image.
 export function logStage(page) {
   return page.addInitScript(() => {
     window.stageLog = [];
@@ -44,7 +44,8 @@ export function pick(page, name) {
   }, name);
 }
 
-// Turns the view by the mouse for `ms`. Resolves to [time, width] of the pictures drawn meanwhile.
+// Drags the view with the mouse for `ms` milliseconds. Resolves to [time, width] of each image drawn in this
+// time.
 export async function dragFor(page, ms) {
   const { x, y } = await middle(page);
   await page.mouse.move(x, y);
@@ -60,7 +61,7 @@ export async function dragFor(page, ms) {
 export const sceneNames = (page) =>
   page.evaluate(() => [...document.querySelectorAll("#gallery [data-name]")].map((card) => card.dataset.name));
 
-// Slows down the browser by the factor `times`, not the service.
+// Slows down the browser, but not the service, by the factor `times`.
 export async function slowDown(page, times) {
   const device = await page.context().newCDPSession(page);
   await device.send("Emulation.setCPUThrottlingRate", { rate: times });

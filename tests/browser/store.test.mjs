@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// Store of the page's state.
+// Tests the store of the page's state.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
@@ -27,7 +27,7 @@ test("calls a listener at once and after each change of its values", () => {
   assert.equal(store.get().samples, 4);
 });
 
-test("calls every listener with the newest values if a listener sets others", () => {
+test("calls every listener with the newest values if a listener sets other values", () => {
   const store = new Store({ scene: "a", title: "", count: 0 });
   store.subscribe(["scene"], ({ scene, count }) => store.set({ title: `Scene ${scene}`, count: count + 1 }));
   const titles = record(store, "title").map(({ title }) => title);
@@ -51,7 +51,7 @@ test("keeps a snapshot unchanged", () => {
   assert.throws(() => (before.speed = 40), TypeError);
 });
 
-test("rejects a value that it does not have", () => {
+test("rejects an unknown name", () => {
   const store = new Store({ speed: 20 });
   assert.throws(() => store.set({ sped: 30 }), /no value "sped"/);
   assert.equal(store.get().speed, 20);

@@ -23,7 +23,7 @@ export function packageFile(name) {
   }
 }
 
-// Exits with the code for "skipped" if the browser or its driver is missing.
+// Exits with the status for "skipped" if the browser or its driver is missing.
 export function skipWithoutBrowser() {
   for (const [what, present] of [
     [CHROMIUM, existsSync(CHROMIUM)],
@@ -35,7 +35,7 @@ export function skipWithoutBrowser() {
   }
 }
 
-// Starts `orrery serve` on `port` (0: a free one). Returns {url, stop()}.
+// Starts `orrery serve` on `port`, or on a free port if it is 0. Returns {url, stop()}.
 export async function startDaemon(port = 0) {
   const program = process.env.TEST_ORRERY ?? join(ROOT, "build/orrery");
   const child = spawn(program, ["serve", "--port", String(port), "--health-port", "0"], {
@@ -45,7 +45,7 @@ export async function startDaemon(port = 0) {
   let output = "";
   const url = await new Promise((resolve, reject) => {
     const timer = setTimeout(
-      () => reject(new Error(`no address within ${START_TIMEOUT_MS} ms; output: ${output}`)),
+      () => reject(new Error(`${program} did not print its address within ${START_TIMEOUT_MS} ms; output: ${output}`)),
       START_TIMEOUT_MS,
     );
     const fail = (why) => {
@@ -62,7 +62,7 @@ export async function startDaemon(port = 0) {
     child.stdout.on("data", read);
     child.stderr.on("data", read);
     child.once("error", (error) => fail(error.message));
-    child.once("close", (code) => fail(`ended with ${code}`));
+    child.once("close", (code) => fail(`exited with status ${code}`));
   }).catch((error) => {
     child.kill("SIGKILL");
     throw error;
@@ -92,12 +92,12 @@ export function startBrowser() {
   });
 }
 
-// Opens a page and records its faults: console errors, uncaught exceptions and requests to another origin.
-// `ready`: selector that is visible once the page is open. `before(page)` runs before the page is opened.
-// Returns {page, faults, close()}.
+// Opens a page and records its faults: console errors, uncaught exceptions and requests to other origins. The
+// selector `ready` is visible once the page is open. `before(page)` runs before the page is opened. Returns
+// {page, faults, close()}.
 export async function openPage(browser, url, { ready = "#canvas", before = () => {}, ...options } = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, ...options });
-  context.setDefaultTimeout(600_000); // long enough for a busy machine: only hangs fail
+  context.setDefaultTimeout(600_000); // long enough for a busy machine, so that only hangs fail
   const page = await context.newPage();
   const faults = [];
   page.on("console", (message) => message.type() === "error" && faults.push(message.text()));
@@ -116,7 +116,7 @@ export async function openPage(browser, url, { ready = "#canvas", before = () =>
   return { page, faults, close };
 }
 
-// Returns size and digest of the picture on the canvas.
+// Returns size and digest of the image on the canvas.
 export function canvasDigest(page) {
   return page.evaluate(async () => {
     const canvas = document.getElementById("canvas");
@@ -138,16 +138,16 @@ export async function eventually(what, probe, timeoutMs = 600_000) {
     if (result) return result;
     await new Promise((resolve) => setTimeout(resolve, 50));
   }
-  throw new Error(`not within ${timeoutMs} ms: ${what}`);
+  throw new Error(`timeout after ${timeoutMs} ms while waiting for ${what}`);
 }
 
-// Waits until the view rests and its finest picture is drawn. Returns the picture's digest.
+// Waits until the view rests and its finest image is drawn. Returns the digest of the image.
 export async function rest(page) {
   await page.locator('#stage[data-shows="still"]:not([data-fading])').waitFor();
   return canvasDigest(page);
 }
 
-// Starts a daemon and a browser for a test file, and stops them after its tests. `after` is that of
+// Starts a daemon and a browser for a test file, and stops them after its tests. `after` is the function of
 // node:test.
 export async function startBoth(after) {
   skipWithoutBrowser();
@@ -161,8 +161,8 @@ export async function startBoth(after) {
 }
 
 // Returns a function that declares a test. The test opens the page with `hash` and runs `body(page,
-// context)`. It fails on faults that do not match `expected`. Stills have one sample unless the hash sets a
-// number, to be quick.
+// context)`. It fails on faults that do not match `expected`. For speed, still images have one sample unless
+// the hash sets a number.
 export function pageTests(browser, daemon) {
   return (name, hash, body, { expected = /^$/, ...options } = {}) =>
     test(name, async () => {
@@ -180,7 +180,7 @@ export function pageTests(browser, daemon) {
     });
 }
 
-// Returns the violations found by axe-core as texts, [] if axe-core is not installed.
+// Returns the violations that axe-core finds, as texts. Returns [] if axe-core is not installed.
 export async function axeViolations(page) {
   const axe = packageFile("axe-core/axe.min.js");
   if (!axe) return [];
@@ -189,7 +189,8 @@ export async function axeViolations(page) {
   return violations.map(({ id, nodes }) => `${id} at ${nodes.map(({ target }) => target)}`);
 }
 
-// Makes refinement streams hang after the pass with `samples`. window.signals: their abort signals.
+// Makes refinement streams hang after the pass with `samples` samples. window.signals contains their abort
+// signals.
 export async function holdRefinement(page, samples) {
   await page.evaluate((last) => {
     const realFetch = window.fetch;
@@ -212,7 +213,7 @@ export async function holdRefinement(page, samples) {
   }, samples);
 }
 
-// Makes charts render a few small pictures. Appends the request bodies to `seen`.
+// Makes charts render a few small images. Appends the request bodies to `seen`.
 export async function quickCharts(page, seen = []) {
   await page.route("**/charts", (route) => {
     const body = route.request().postDataJSON();

@@ -180,10 +180,11 @@ TEST(CameraRays, SpacesParallelOrthographicRaysByHeight) {
   EXPECT_EQ(first.direction, Vec3d(0, 0, -1));
   expect_near(first.origin, Vec3d(-3 + 0.015, 1.5 - 0.015, 4), 1e-14);
   expect_near(last.origin, Vec3d(3 - 0.015, -1.5 + 0.015, 4), 1e-14);
-  EXPECT_NEAR(frame_at(camera, {0, 0, 2}).half_extent, 3, 1e-15) << "farther away more is seen";
+  EXPECT_NEAR(frame_at(camera, {0, 0, 2}).half_extent, 3, 1e-15)
+      << "the visible extent grows with the distance";
 }
 
-// Longitude grows evenly to the right and latitude upward. The centre is the view direction.
+// Longitude increases linearly to the right and latitude linearly upward. The centre is the view direction.
 TEST(CameraRays, SpacesPanoramaAnglesEvenly) {
   const PlacedCamera camera{{}, camera_of({{"type", "panorama"}})};
   const int width = 128, height = 64;

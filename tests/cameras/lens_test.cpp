@@ -24,10 +24,10 @@ Picture picture_of(const Json& scene) {
   request.samples = 64;
   return render(scene, request);
 }
-constexpr double kPixelAngle = 2 * 0.363970234266202 / 128;  // tangent of a pixel
+constexpr double kPixelAngle = 2 * 0.363970234266202 / 128;  // tangent of the angle of one pixel
 
-// A point at distance z shows as a disk of radius r |z - f| / z in the plane of focus. The total light equals
-// that of a pinhole camera.
+// A point at distance z is blurred to a disk of radius r |z - f| / z in the focal plane. The total light
+// equals that of a pinhole camera.
 TEST(ThinLens, BlursPointToDisk) {
   covers("R26 light-41");
   const double sharp = picture_of(lamp_before_lens(0, 4)).sum();
@@ -35,8 +35,8 @@ TEST(ThinLens, BlursPointToDisk) {
     const double radius = 0.1, pixel = kPixelAngle * focus;
     const Picture blurred = picture_of(lamp_before_lens(radius, focus));
     EXPECT_NEAR(blurred.sum() / sharp, 1, 0.02) << focus;
-    // Twice the second moment of an even disk is its radius squared. The disks of the lamp and of the pixels
-    // add to the blur.
+    // Twice the second moment of a uniform disk is its squared radius. The moments of the lamp and of a pixel
+    // add to that of the blur.
     double moment = 0;
     for (int y = 0; y < 128; ++y)
       for (int x = 0; x < 128; ++x)

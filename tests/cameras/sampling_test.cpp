@@ -13,7 +13,7 @@
 namespace orrery::test {
 namespace {
 
-// Expects chi-square within 5 standard deviations of its mean, from both sides. Cells with an expected count
+// Expects chi-square within 5 standard deviations of its mean, above and below. Cells with an expected count
 // below 5 are skipped.
 void expect_chi_square(const std::vector<double>& counts, const std::vector<double>& expected) {
   double sum = 0;
@@ -31,8 +31,8 @@ using N = Lanes<double>;
 
 class Lens : public testing::TestWithParam<int> {};
 
-// Grid cells wholly within the aperture receive samples in proportion to their area. The area of the whole
-// aperture normalizes the density.
+// Grid cells that are entirely inside the aperture receive samples in proportion to their area, normalized by
+// the area of the aperture.
 TEST_P(Lens, SamplesApertureUniformly) {
   covers("light-24 light-25");
   const int blades = GetParam();
@@ -78,8 +78,8 @@ TEST_P(Lens, SamplesApertureUniformly) {
 
 INSTANTIATE_TEST_SUITE_P(Blades, Lens, testing::Values(0, 3, 4, 5, 6, 7, 16));
 
-// Returns f(x), x pixels from the centre, of the default width, without normalization, by the formulas of the
-// papers.
+// Returns the value of the filter at `x` pixels from its centre, with the filter's default width and without
+// normalization. The formulas are those of the papers.
 double height(Filter filter, double x) {
   constexpr double pi = std::numbers::pi;
   x = std::abs(x);
@@ -104,7 +104,8 @@ double height(Filter filter, double x) {
 
 class PixelFilters : public testing::TestWithParam<Filter> {};
 
-// Samples of each part have its density over both axes, and the weights of the parts are their integrals.
+// The density of samples in the positive or negative part of a filter is that part of f(x) f(y). The part's
+// weight is its integral.
 TEST_P(PixelFilters, SamplesInProportionToFilterValue) {
   covers("light-24 light-25");
   const Filter filter = GetParam();

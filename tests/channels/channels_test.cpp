@@ -33,21 +33,21 @@ Layers render_layers(const Json& json, const RenderRequest& request, const std::
   return {render_frame(scene, settle(scene, plan), FilmStorage::sums, shared_pool()).film, plan.width};
 }
 
-RenderRequest odd_size() { return in_double(size(33, 33)); }  // a pixel's centre is on the axis
+RenderRequest odd_size() { return in_double(size(33, 33)); }  // the centre of a pixel is on the optical axis
 
 const char* const kBall = "[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]";
 
 TEST(Channels, StoresDistanceAlongRayAsDepth) {
   const Layers layers = render_layers(scene_of(kBall), odd_size(), {"depth"});
   EXPECT_EQ(layers.at(0, 0, 16, 16), 3.0f);
-  EXPECT_EQ(layers.at(0, 0, 0, 0), std::numeric_limits<float>::infinity()) << "nothing is met there";
+  EXPECT_EQ(layers.at(0, 0, 0, 0), std::numeric_limits<float>::infinity()) << "the ray misses";
 }
 
 TEST(Channels, StoresSurfaceNormalAndPosition) {
   const Layers layers = render_layers(scene_of(kBall), odd_size(), {"normal", "position"});
   for (int x = 12; x <= 20; ++x)
     for (std::size_t c = 0; c < 3; ++c)
-      EXPECT_NEAR(layers.at(0, c, x, 14), layers.at(1, c, x, 14), 1e-7) << "of a unit sphere they are equal";
+      EXPECT_NEAR(layers.at(0, c, x, 14), layers.at(1, c, x, 14), 1e-7) << "equal on the unit sphere";
   EXPECT_EQ(layers.at(0, 2, 16, 16), 1.0f);
   EXPECT_EQ(layers.at(0, 2, 0, 0), 0.0f);
 }
@@ -108,12 +108,12 @@ TEST(Channels, AveragesOnlyHitSamplesAtEdges) {
         EXPECT_LE(depth, 4);
       }
       edges += std::isfinite(depth) && object == 0;
-      EXPECT_TRUE(object == 0 || object == 1) << "numbers have no mean";
+      EXPECT_TRUE(object == 0 || object == 1) << "object numbers are not averaged";
     }
   EXPECT_GT(edges, 0);
 }
 
-TEST(Channels, LeavesPictureUnchanged) {
+TEST(Channels, LeavesImageUnchanged) {
   const Json scene = sample("instances");
   const RenderRequest request = size(64, 48);
   std::vector<std::string> all;
@@ -153,8 +153,9 @@ TEST(Film, AccumulatesPassesToFullRender) {
   EXPECT_EQ(whole.values(1, 0), passes.values(1, 0));
 }
 
-// The views of one film equal the images rendered for each storage alone.
-TEST(Film, ReturnsSamePictureFromEveryStorage) {
+// An image converted from a film of higher precision equals the image that the film of lower precision
+// stores.
+TEST(Film, ReturnsSameImageFromEveryStorage) {
   const PreparedScene scene(load(sample("paper")));
   RenderRequest request = size(50, 40);
   request.samples = 3;

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-// Tests of the program's command line.
+// Tests the command line of the program.
 namespace orrery {
 namespace {
 
@@ -96,7 +96,7 @@ TEST_F(CommandLine, AcceptsJsonNamesAsOptions) {
   EXPECT_EQ(nlohmann::json::parse(parameter_name).at("request").at("camera").at("azimuth_degrees"), 30);
 }
 
-TEST_F(CommandLine, ReproducesPictureFromPrintedPlan) {
+TEST_F(CommandLine, ReproducesImageFromPrintedPlan) {
   const std::string render = "render " + write("s.json", kScene) + " -o ";
   ASSERT_EQ(run(render + file("a.png") + " --error 0.2 --azimuth 30 --certificate " + file("c.json")).status,
             0);
@@ -112,7 +112,7 @@ TEST_F(CommandLine, ReproducesPictureFromPrintedPlan) {
   EXPECT_EQ(run(render + file("f.png") + " --azimuth 50 --samples 4 --pan 0,0.5,0").status, 0);
   EXPECT_EQ(bytes_of(file("e.png")), bytes_of(file("f.png"))) << "flags override the plan";
   EXPECT_EQ(run("explain " + file("s.json") + " --plan /v1/scenes/0/frame.png").status, 0)
-      << "all as the scene says";
+      << "a plan may be empty";
   const std::pair<const char*, const char*> wrong[] = {
       {"samples=0", "--plan samples: must be an integer from 1 to "},
       {"sampels=4", "--plan sampels: unknown query parameter \"sampels\" (did you mean \"samples\"?)"},
@@ -154,7 +154,7 @@ TEST_F(CommandLine, ReportsFileAndPointerOfProblemsInCheck) {
   EXPECT_EQ(problems[0].at("severity"), "error");
 }
 
-TEST_F(CommandLine, WarnsAboutUselessPictures) {
+TEST_F(CommandLine, WarnsAboutUselessImages) {
   std::string text = kScene;
   text.replace(text.find("[0, 0, 4]"), 9, "[0, 0, 0.5]");
   const std::string inside = write("inside.json", text), said = "camera is inside an opaque shape";
@@ -252,7 +252,7 @@ TEST_F(CommandLine, WritesStabilityAsTextJsonAndDocs) {
   EXPECT_EQ(text.out.rfind("A1 ", 0), 0u) << text.out;
   const auto rows = nlohmann::json::parse(json.out).at("rows");
   const std::string count = std::to_string(rows.size());
-  EXPECT_NE(text.out.find(count + " of " + count + " rows keep their bounds\n"), std::string::npos)
+  EXPECT_NE(text.out.find(count + " of " + count + " rows are within their bounds\n"), std::string::npos)
       << text.out;
   fs::create_directory(folder_ / "pictures");
   EXPECT_EQ(run("stability --docs " + folder_.string()).status, 0);
@@ -264,8 +264,8 @@ TEST_F(CommandLine, WritesStabilityAsTextJsonAndDocs) {
   EXPECT_EQ(run("stability --docs " + file("none")).status, 1);
 }
 
-// Browsers do not play the colour format that ffmpeg would choose (4:4:4). The format yuv420p requires even
-// sides.
+// Browsers do not play the pixel format that ffmpeg would choose (4:4:4). The format yuv420p requires even
+// width and height.
 TEST_F(CommandLine, SuggestsBrowserPlayableVideoInOrbitHelp) {
   const std::string help = run("orbit --help").out;
   EXPECT_NE(help.find("-pix_fmt yuv420p orbit.mp4"), std::string::npos) << help;
@@ -295,7 +295,7 @@ TEST_F(CommandLine, WritesChartFormatOfFileExtension) {
   EXPECT_EQ(run(few + file("C.SVG")).status, 0);
 }
 
-TEST_F(CommandLine, PrintsChartFlagsAndWritesFrontPictures) {
+TEST_F(CommandLine, PrintsChartFlagsAndWritesFrontImages) {
   const std::string scene = write("s.json", kScene);
   const Outcome told = run("chart " + scene + " --chart-samples 4 --chart-width 24 --rounds 2 -o " +
                            file("c.json") + " --pictures " + file("pictures"));
@@ -333,7 +333,7 @@ TEST_F(CommandLine, AppliesBudgetToOrbit) {
   EXPECT_LE(budget.at("largest_bound"), 0.2);
   const auto late = nlohmann::json::parse(run(orbit + "--error 0.5 --seconds 0.000001").out).at("budget");
   EXPECT_EQ(late.at("met"), false);
-  EXPECT_EQ(late.at("frames_met"), 3) << "of the error";
+  EXPECT_EQ(late.at("frames_met"), 3) << "the error budget is met";
   const auto in_time = nlohmann::json::parse(run(orbit + "--seconds 60 --samples 2").out).at("budget");
   EXPECT_EQ(in_time.at("met"), true);
   EXPECT_EQ(in_time.at("frames_met"), nullptr);
@@ -361,7 +361,7 @@ TEST_F(CommandLine, WritesThroughSymbolicLinks) {
   EXPECT_EQ(bytes_of(folder_ / "far" / "a.png").rfind("\x89PNG", 0), 0u);
 }
 
-TEST_F(CommandLine, RejectsCertificatePathOfPicture) {
+TEST_F(CommandLine, RejectsCertificateAtPathOfImage) {
   const std::string render = "render " + write("s.json", kScene) + " -o " + file("a.png") + " --certificate ";
   EXPECT_EQ(run(render + (folder_ / "." / "a.png").string()).status, 2);
   const Outcome bound = run("render " + file("s.json") + " --view bound --error 0.1");

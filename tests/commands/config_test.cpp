@@ -7,7 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-// Sources of the service's settings, and error messages for invalid ones.
+// Tests the sources of the service's settings and the errors for invalid ones.
 namespace orrery {
 namespace {
 
@@ -53,27 +53,28 @@ class Config : public ::testing::Test {
 };
 
 TEST_F(Config, ReportsAllErrorsAtOnce) {
-  const std::string file = write(
-      "config.json", R"({"port": 99999, "bodybytes": 1, "threads": "many", "insecure": 3, "jobs": [1]})");
+  const std::string file =
+      write("config.json",
+            R"({"port": 99999, "imagecachebytes": 1, "threads": "many", "insecure": 3, "jobs": [1]})");
   const std::string tokens = write("tokens", "alice read\nbob paint " + std::string(64, 'a') + "\n");
   const std::string key = write("key", "short");
   const Outcome outcome =
-      serve("--check-config --config " + file + " --connections 0 --body-bites 5 --tokens-file " + tokens +
-                " --share-key-file " + key +
+      serve("--check-config --config " + file + " --connections 0 --image-cache-bites 5 --tokens-file " +
+                tokens + " --link-signing-key-file " + key +
                 " --log loud --cors-origins '*,https://a.example:8443,HTTP://b,c,http://d/'",
-            "ORRERY_PORTT=1 ORRERY_ORBITS=x ORRERY_COLOUR=red");
+            "ORRERY_PORTT=1 ORRERY_MAX_ORBIT_STREAMS=x ORRERY_COLOUR=red");
   EXPECT_EQ(outcome.status, 2);
   for (const std::string& line : {
            file + ": /port: must be an integer from 0 to 65535 (got 99999)",
-           file + ": unknown setting bodybytes (did you mean body_bytes?)",
+           file + ": unknown setting imagecachebytes (did you mean image_cache_bytes?)",
            file + ": /threads: must be an integer from 0 to 1024 (got many)",
            file + ": /insecure: must be true or false (got 3)",
            file + ": /jobs: must be a number, a string, true or false (got [1])",
            std::string("--connections: must be an integer from 1 to 10000 (got 0)"),
-           std::string("ORRERY_ORBITS: must be an integer from 1 to 10000 (got x)"),
+           std::string("ORRERY_MAX_ORBIT_STREAMS: must be an integer from 1 to 10000 (got x)"),
            std::string("unknown setting ORRERY_PORTT (did you mean ORRERY_PORT?)"),
            std::string("unknown setting ORRERY_COLOUR"),
-           std::string("unknown option --body-bites (did you mean --body-bytes?)"),
+           std::string("unknown option --image-cache-bites (did you mean --image-cache-bytes?)"),
            tokens + ":1: must be a name, scopes and the SHA-256 of a token, separated by blanks",
            tokens + ":2: must be one of \"read\", \"render\", \"write\" or \"admin\" (got \"paint\")",
            key + ": key must have at least 32 bytes (got 5)",
@@ -100,23 +101,51 @@ TEST_F(Config, PreventsStartWithInvalidSettings) {
 
 TEST_F(Config, PrefersFlagsThenEnvironmentThenFile) {
   const std::string file =
-      write("config.json", R"({"jobs": 3, "orbits": 3, "renders": 3, "queue_rays": 1e6})");
-  const auto all = settings("--config " + file + " --jobs 5", "ORRERY_JOBS=4 ORRERY_ORBITS=4");
+      write("config.json", R"({"jobs": 3, "max_orbit_streams": 3, "threads": 3, "max_queued_rays": 1e6})");
+  const auto all = settings("--config " + file + " --jobs 5", "ORRERY_JOBS=4 ORRERY_MAX_ORBIT_STREAMS=4");
   EXPECT_EQ(all.at("jobs"), 5);
-  EXPECT_EQ(all.at("orbits"), 4);
-  EXPECT_EQ(all.at("renders"), 3);
-  EXPECT_EQ(all.at("queue_rays"), 1'000'000);
-  EXPECT_EQ(all.at("jobs_kept"), 1000);
+  EXPECT_EQ(all.at("max_orbit_streams"), 4);
+  EXPECT_EQ(all.at("threads"), 3);
+  EXPECT_EQ(all.at("max_queued_rays"), 1'000'000);
+  EXPECT_EQ(all.at("max_finished_jobs"), 1000);
+}
+
+TEST_F(Config, ReadsFormerNamesFromEverySource) {
+  const std::string file = write("config.json", R"({"jobs_kept": 3, "queue_rays": 1e6})");
+  const auto all = settings("--config " + file + " --orbits 5 --max-finished-jobs 6",
+                            "ORRERY_RENDERS=4 ORRERY_ORBITS=7 ORRERY_STORE_BYTES=8000");
+  EXPECT_EQ(all.at("max_queued_rays"), 1'000'000) << "file";
+  EXPECT_EQ(all.at("max_finished_jobs"), 6) << "a flag overrides the file";
+  EXPECT_EQ(all.at("max_orbit_streams"), 5) << "a flag overrides the environment";
+  EXPECT_EQ(all.at("max_concurrent_renders"), 4) << "variable";
+  EXPECT_EQ(all.at("scene_cache_bytes"), 8000) << "variable";
+  EXPECT_FALSE(all.contains("jobs_kept"));
+  EXPECT_EQ(settings("--orbits 5", "ORRERY_MAX_ORBIT_STREAMS=7").at("max_orbit_streams"), 5);
+}
+
+TEST_F(Config, RejectsFormerAndCurrentNameTogether) {
+  const std::string file = write("config.json", R"({"jobs_kept": 3, "max_finished_jobs": 3})");
+  const Outcome outcome = serve("--check-config --config " + file + " --orbits 5 --max-orbit-streams 5",
+                                "ORRERY_RENDERS=4 ORRERY_MAX_CONCURRENT_RENDERS=4");
+  EXPECT_EQ(outcome.status, 2);
+  for (const std::string& line : {
+           file + ": /jobs_kept is the former name of /max_finished_jobs; give only /max_finished_jobs",
+           std::string("--orbits is the former name of --max-orbit-streams; give only --max-orbit-streams"),
+           std::string("ORRERY_RENDERS is the former name of ORRERY_MAX_CONCURRENT_RENDERS; give only "
+                       "ORRERY_MAX_CONCURRENT_RENDERS"),
+       })
+    EXPECT_NE(outcome.err.find(line), std::string::npos) << line << "\n" << outcome.err;
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 3) << outcome.err;
 }
 
 TEST_F(Config, ScalesBudgetsWithMemory) {
-  const auto usual = settings(""), half = settings("--memory-bytes 1610612736 --film-bytes 1000");
-  for (const char* budget :
-       {"bodies_bytes", "answers_bytes", "store_bytes", "asset_store_bytes", "job_bytes"})
+  const auto usual = settings(""), half = settings("--memory-bytes 1610612736 --film-cache-bytes 1000");
+  for (const char* budget : {"request_buffer_bytes", "response_buffer_bytes", "scene_cache_bytes",
+                             "asset_store_bytes", "job_bytes"})
     EXPECT_EQ(half.at(budget), usual.at(budget).get<std::size_t>() / 2) << budget;
-  EXPECT_EQ(half.at("film_bytes"), 1000) << "what is given stays";
+  EXPECT_EQ(half.at("film_cache_bytes"), 1000) << "explicit settings are not scaled";
   const auto small = settings("--memory-bytes 160000000");
-  EXPECT_EQ(small.at("asset_bytes"), small.at("asset_store_bytes")) << "more could not be kept";
+  EXPECT_EQ(small.at("asset_bytes"), small.at("asset_store_bytes")) << "an asset must fit in the store";
   const Outcome refused = serve("--check-config --job-bytes 3000000000");
   EXPECT_EQ(refused.status, 2);
   EXPECT_NE(refused.err.find("orrery: --memory-bytes: memory_bytes must be at least "), std::string::npos)

@@ -9,7 +9,7 @@
 
 #include "core/plan/options.h"
 
-// Layout and content of the program's help.
+// Tests the layout and content of the program's help.
 namespace orrery {
 namespace {
 
@@ -44,7 +44,7 @@ std::vector<std::string> lines_of_help(const std::string& arguments) {
   return lines;
 }
 
-TEST(Help, OfTheProgramFitsOnOneScreen) {
+TEST(Help, ListsCommandsOnOneScreen) {
   const std::vector<std::string> lines = lines_of_help("--help");
   EXPECT_LE(lines.size(), 24U);
   for (const char* command : kCommandNames)
@@ -63,7 +63,7 @@ TEST(Help, HasAtMost80Columns) {
     for (const std::string& line : lines_of_help("help " + topic)) EXPECT_LE(line.size(), 80U) << line;
 }
 
-TEST(Help, OfACommandIsPrintedByItsFlagAndByHelp) {
+TEST(Help, PrintsSameTextForFlagAndHelpCommand) {
   for (const std::string command : kCommandNames) {
     const HelpRun by_flag = run_program(command + " --help"), by_command = run_program("help " + command);
     EXPECT_EQ(by_flag.status, 0) << command;
@@ -73,7 +73,7 @@ TEST(Help, OfACommandIsPrintedByItsFlagAndByHelp) {
   EXPECT_EQ(run_program("--help").text, run_program("help").text);
 }
 
-TEST(Help, StartsWithTheCommonOptions) {
+TEST(Help, StartsWithCommonOptions) {
   for (const char* command : {"render", "orbit"}) {
     const std::string text = run_program(std::string(command) + " --help").text;
     std::size_t before = text.find("Common options:");
@@ -88,7 +88,8 @@ TEST(Help, StartsWithTheCommonOptions) {
   }
 }
 
-// The commands name every image option. Only `help options` describes those that are not common.
+// The help of render and orbit names every image option. Only `help options` describes options that are not
+// common.
 TEST(Help, ListsImageOptionsByNameInCommandHelp) {
   const std::string described = run_program("help options").text;
   for (const RenderOption& option : render_options()) {

@@ -91,7 +91,7 @@ TEST(ImageEnvironment, MatchesAnalyticIrradianceOfHalfWhiteSky) {
   }
 }
 
-// Compares a rotated sky with random bright spots with the sum over a fine grid of directions.
+// Compares the floor under a rotated sky of random bright spots with a sum over a fine grid of directions.
 TEST(ImageEnvironment, MatchesSumOverDirections) {
   covers("light-22");
   Random random(3);
@@ -119,14 +119,14 @@ TEST(ImageEnvironment, MatchesSumOverDirections) {
       {{"type", "image"}, {"file", "f"}, {"rotation_degrees", kDegrees}, {"scale", kScale}}, normal);
   EXPECT_NEAR(floor_mean(load_scene(parse_document(scene.dump()), SingleImageSource(picture))) / expected, 1,
               3e-3);
-  // With another light, each is sampled half of the time.
+  // With a second light, each of the two is sampled half of the time.
   scene["lights"] = Json::array(
       {{{"type", "directional"}, {"direction_to_light", numbers(normal)}, {"intensity", {3, 3, 3}}}});
   EXPECT_NEAR(floor_mean(load_scene(parse_document(scene.dump()), SingleImageSource(picture))), expected + 3,
               5e-3 * (expected + 3));
 }
 
-// Compares sampled radiance and density with those seen by rays, in both number types.
+// Expects the radiance and density of light samples to equal those along rays in the same directions.
 template <class T>
 void expect_draws_as_seen(const Scene& scene, T tolerance) {
   const LightKernelPtr<T> kernel = scene.environment->kernel(T());
@@ -191,7 +191,7 @@ TEST(ImageEnvironment, IsBitIdenticalAcrossThreadsAndScales) {
        {{"type", "directional"}, {"direction_to_light", {1, 1, 1}}, {"angle_degrees", 8}}});
   scene.erase("background");
   EXPECT_TRUE(identical(picture_of(scene, 1), picture_of(scene, 3)));
-  scene["lights"].erase(1);  // selection depends on the light's power in a scene of this size
+  scene["lights"].erase(1);  // with a second light, selection depends on the size of the scene
   const Picture one = picture_of(scene, 1);
   EXPECT_TRUE(identical(one, picture_of(scaled(scene, 0x1p-17), 0)));
   EXPECT_TRUE(identical(one, picture_of(scaled(scene, 0x1p17), 0)));

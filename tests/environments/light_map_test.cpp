@@ -59,7 +59,7 @@ TEST(ImportanceTable, SamplesCellsByProbability) {
 }
 
 // Within a cell half a texel wide the density is bilinear, so its mean is its value at the centre.
-TEST(LightMap, SamplesPlacesByDensity) {
+TEST(LightMap, SamplesInProportionToDensity) {
   covers("light-24");
   constexpr int kWidth = 16, kHeight = 8, kDraws = 1'000'000;
   for (const Weights weights : {Weights::plain, Weights::compensated}) {
@@ -90,7 +90,7 @@ TEST(LightMap, SamplesPlacesByDensity) {
   }
 }
 
-// Integrates over directions of the sphere instead of places in the map.
+// Integrates over directions of the sphere, not over positions in the map.
 TEST(LightMap, IntegratesDensityToOne) {
   covers("light-25");
   const LightMap map(spotted(16, 8));
@@ -155,8 +155,8 @@ TEST(LightMap, DisablesSamplingOfUniformLight) {
 struct Moments {
   double mean, variance;
 };
-// Returns the moments of the irradiance of a white floor over pi. Each estimate combines one light sample and
-// one cosine-distributed direction.
+// Returns mean and variance of estimates of the irradiance of a floor, divided by pi. Each estimate combines
+// one light sample and one cosine-distributed direction.
 Moments floor_under(const LightMap& map, int draws) {
   Random random(7);
   double sum = 0, squares = 0;

@@ -8,8 +8,7 @@
 
 namespace orrery::test {
 
-// Returns an image whose texel in column x and row y, both in texels, is `paint(x, y)` as red, green and
-// blue.
+// Returns an image with the linear RGB value paint(x, y) in column x of row y.
 inline Texels painted(int width, int height, const std::function<Vec3d(int x, int y)>& paint) {
   Texels picture{width, height, {}};
   for (int y = 0; y < height; ++y)

@@ -4,13 +4,13 @@
 
 namespace orrery::exact {
 
-// Cosine and sine of an angle, in units of 2^-kFractionBits. Exact at multiples of a right angle, else within
-// a few of these units.
+// Cosine and sine of an angle, in units of 2^-kFractionBits. Exact at multiples of a right angle, otherwise
+// accurate to a few of these units.
 struct ExactRotation {
   Integer cosine, sine;
 };
 
-// Returns pi in these units, by Machin's formula: pi / 4 = 4 atan(1/5) - atan(1/239).
+// Returns pi in units of 2^-kFractionBits, by Machin's formula: pi / 4 = 4 atan(1/5) - atan(1/239).
 inline Integer pi() {
   const auto arctangent = [](unsigned over) {
     Integer power = kOne / over, sum = power;

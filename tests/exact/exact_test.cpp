@@ -8,8 +8,8 @@
 #include "tests/support/pictures.h"
 #include "tests/support/structures.h"
 
-// Compares the renderer's visibility with exact arithmetic, pixel by pixel. EXACT_PIXELS is the number of
-// pixels over all classes, compared in each number type.
+// Compares the renderer's visibility with exact arithmetic, pixel by pixel. The environment variable
+// EXACT_PIXELS sets the number of pixels over all scene classes. Each is compared in float and double.
 namespace orrery::test {
 namespace {
 
@@ -35,8 +35,8 @@ std::vector<float> objects_seen(const Json& scene, Precision precision, const st
   return render_frame(prepared, settle(prepared, plan), FilmStorage::sums, shared_pool()).film.values(0, 0);
 }
 
-// Returns the number of roundings that explains `object` at a pixel. More than kMaxRoundings means
-// unexplained.
+// Returns the smallest tested number of rounding errors that explains `object` at the pixel. A result above
+// kMaxRoundings means that the object is wrong.
 double roundings(const exact::Oracle& oracle, int x, int y, int object, double epsilon) {
   double count = 1;
   while (count <= kMaxRoundings && !oracle.explains(x, y, object, count, epsilon)) count *= 2;
@@ -75,7 +75,7 @@ TEST_P(ExactVisibility, MatchesOracleUpToRoundingAtEdges) {
         check("float", in_float[pixel], 0x1p-23);
       }
   }
-  std::cout << GetParam().name << ": " << pixels << " pixels in each type";
+  std::cout << GetParam().name << ": " << pixels << " pixels in each number type";
   for (const auto& [kind, count] : differing) std::cout << ", " << count << " " << kind << " roundings";
   std::cout << "\n";
 }

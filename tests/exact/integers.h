@@ -9,13 +9,13 @@ namespace orrery::exact {
 
 using Integer = mpz_class;
 
-// Binary digits of irrational factors (unit directions, sines): these are integers in units of
-// 2^-kFractionBits.
+// Number of fraction bits of irrational factors (unit directions, sines). They are stored as integers in
+// units of 2^-kFractionBits.
 inline constexpr unsigned kFractionBits = 256;
 inline const Integer kOne = Integer(1) << kFractionBits;
 
-// Returns `x` in units of 2^-shift. Requires a whole number of units, as every double has with a large enough
-// shift.
+// Returns `x` in units of 2^-shift. Requires that the result is an integer, as it is for every double if
+// `shift` is large enough.
 inline Integer in_units(double x, int shift) {
   int exponent = 0;
   const double mantissa = std::frexp(x, &exponent);
@@ -25,7 +25,7 @@ inline Integer in_units(double x, int shift) {
   return result >> static_cast<unsigned>(-left);
 }
 
-// Returns the smallest shift with which in_units() is exact.
+// Returns the smallest shift for which in_units() is exact.
 inline int bits_below_one(double x) {
   if (x == 0) return 0;
   int exponent = 0;
@@ -45,7 +45,7 @@ inline Integer dot(const IVec& a, const IVec& b) { return a.x * b.x + a.y * b.y 
 inline IVec cross(const IVec& a, const IVec& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-// Returns the length of `v`, in units of 2^-kFractionBits of those of `v`, rounded down.
+// Returns the length of `v`, rounded down, in 2^-kFractionBits times the unit of `v`.
 inline Integer length(const IVec& v) { return sqrt(Integer(dot(v, v) << (2 * kFractionBits))); }
 
 // Returns the sign of a + b sqrt(d). Requires d >= 0.

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kFloatBits = 2048;  // for approximate distances between hits
+constexpr int kFloatBits = 2048;  // precision of approximate distances between hits
 
 int finest_bit(const json& value) {
   if (value.is_number()) return bits_below_one(value.get<double>());
@@ -203,7 +203,7 @@ Oracle::Reach Oracle::reach(const Ray& ray, int object) const {
 std::vector<Ray> Oracle::moved_rays(const Ray& ray, const mpf_class& t, double distance) const {
   constexpr unsigned kMore = 512;
   const int shift = shift_ + static_cast<int>(kMore);
-  std::vector<IVec> steps{{0, 0, 0}};  // across the ray, units of 2^-shift
+  std::vector<IVec> steps{{0, 0, 0}};  // displacements across the ray, in units of 2^-shift
   for (int i = 0; i < 8; ++i) {
     const double angle = i * 0.78539816339744831;
     const Integer u = in_units(distance * std::cos(angle), shift + 1100) >> 1100,

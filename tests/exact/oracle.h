@@ -19,13 +19,13 @@ class Oracle {
   int height() const { return height_; }
 
   // Returns the number of the first object hit by the ray through the pixel's centre, or 0 if the ray misses.
-  // Numbers start at 1 in the order of the scene, instances after objects. Ties go to the first in the order
-  // of types: sphere, plane, triangle, mesh, box, disk, cylinder, then listing, then instances.
+  // Numbers start at 1 in the order of the scene, instances after objects. Ties go to the first by type
+  // (sphere, plane, triangle, mesh, box, disk, cylinder), then by order in the scene. Instances come last.
   int object_at(int x, int y) const;
 
-  // Returns true if rounding can make a renderer see `object` at the pixel. Positions move by at most
-  // `roundings` times `epsilon` times the largest coordinate in play. They move across the ray, at its origin
-  // and at the hit, and along the ray.
+  // Returns true if rounding can make a renderer see `object` at the pixel. Ray origin and hit may move
+  // across the ray, and the hit along it. Each moves by at most `roundings` times `epsilon` times the largest
+  // coordinate involved.
   bool explains(int x, int y, int object, double roundings, double epsilon) const;
 
  private:
@@ -35,11 +35,11 @@ class Oracle {
     int placement = -1;  // index into placements_, or -1
   };
   struct Placement {
-    IVec columns[3];      // in units of 2^-kFractionBits of the scene's
+    IVec columns[3];      // in units of 2^-kFractionBits
     IVec translation;     // in the scene's units
     IVec rows[3];         // adjugate of the columns
     Integer determinant;  // determinant of the columns
-    double size = 1;      // largest factor
+    double size = 1;      // largest scale factor
   };
   struct Nearest {
     int object = 0;
@@ -48,7 +48,7 @@ class Oracle {
 
   // Scale of rounding errors at a pixel.
   struct Reach {
-    double magnitude;  // metres: the largest coordinate of the ray and of the objects in play
+    double magnitude;  // largest coordinate of the ray and the objects involved, metres
     mpf_class t;       // ray parameter of the farther hit
     mpf_class speed;   // metres per unit of t
   };
@@ -68,12 +68,12 @@ class Oracle {
   // moves in eight directions or stays.
   std::vector<Ray> moved_rays(const Ray& ray, const mpf_class& t, double distance) const;
 
-  int shift_;  // the scene's units are 2^-shift_ metres
+  int shift_;  // one scene unit is 2^-shift_ metres
   int width_, height_;
   bool parallel_ = false;
   IVec eye_, back_, right_, up_;  // unit directions times one common factor
   Integer scale_;                 // that factor
-  Integer extent_;                // half the image's height: units of 2^-kFractionBits, or the scene's units
+  Integer extent_;                // half the image height, in scene units (orthographic) or 2^-kFractionBits
   std::vector<Item> items_;
   std::vector<Placement> placements_;
 };

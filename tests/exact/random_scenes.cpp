@@ -35,7 +35,7 @@ json tetrahedron(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d)
           {"indices", {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}}}};
 }
 
-// Returns a random shape near `at`, of about `size`.
+// Returns a random shape of about size `size` near `at`.
 json any_shape(Random& random, const Vec3d& at, double size) {
   const Vec3d a = at + random.in_cube(size), b = at + random.in_cube(size), c = at + random.in_cube(size);
   switch (random.below(8)) {
@@ -96,7 +96,7 @@ json nested(Random& random) {
   return scene(objects, random.direction() * random.between(0.1, 4), random.in_cube(0.1), 50);
 }
 
-// Returns touching faces, rims and surfaces.
+// Returns shapes whose faces, rims or curved surfaces touch.
 json touching(Random& random) {
   json objects = json::array();
   const double side = random.between(0.3, 0.6);
@@ -135,7 +135,7 @@ json lattice(Random& random) {
     if (kind == 5 && length(cross(b - a, c - a)) > 0)
       objects.push_back(tetrahedron(a, b, c, a + cross(b - a, c - a)));
   }
-  // Eye offset of half a pixel: the centres of an image of 24 rows lie at half metres.
+  // The eye is offset by half a pixel, because the pixel centres of an image of 24 rows are at half metres.
   return parallel(scene(objects, Vec3d(0.25, 0.25, 8), Vec3d(0.25, 0.25, 0), 45), 12);
 }
 

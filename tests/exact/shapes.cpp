@@ -13,7 +13,7 @@ void keep_nearer(OptionalRoot& nearest, Root t) {
 
 IVec from(const Ray& ray, const IVec& point) { return ray.origin - point * ray.w; }
 
-// Returns the crossing of the ray with the plane through `point`, or nullopt if they are parallel.
+// Returns the crossing of the ray with the plane through `point`, or nullopt if the ray is parallel to it.
 OptionalRoot crossing(const Ray& ray, const IVec& point, const IVec& normal) {
   const Integer along = dot(ray.direction, normal);
   if (along == 0) return {};
@@ -93,7 +93,7 @@ OptionalRoot cylinder(const Shape& s, const Ray& ray) {
   const bool capped = s.kind == Shape::Kind::cylinder;
   const IVec axis = capped ? s.b - s.a : s.b;
   const IVec f = from(ray, s.a);
-  // Components perpendicular to the axis, times its length.
+  // Components perpendicular to the axis, times the length of the axis.
   const IVec d_across = cross(ray.direction, axis), f_across = cross(f, axis);
   const Integer r = s.radius * ray.w;
   const auto roots = quadratic(dot(d_across, d_across), dot(f_across, d_across),

@@ -15,16 +15,16 @@ struct Ray {
   IVec direction;
 };
 
-// Shape with lengths and positions in the scene's units. Normals and axes have any length.
+// Shape with lengths and positions in the scene's units. Normals and axes may have any length.
 struct Shape {
   enum class Kind { sphere, plane, triangle, box, disk, cylinder, infinite_cylinder } kind;
   IVec a, b, c;  // centre | point, normal | corners | min, max | centre, normal | base, top | point, axis
   Integer radius = 0;  // for sphere, disk and cylinders
-  double reach = 0;    // largest coordinate, metres: scale of rounding errors
+  double reach = 0;    // largest coordinate in metres, which scales rounding errors
 };
 
-// Returns the first intersection of the ray, ahead of its origin, with the shape's surface, borders included.
-// Returns nullopt if the ray misses or runs within a flat surface.
+// Returns the first intersection beyond the ray's origin with the surface of the shape, including its
+// borders. Returns nullopt if the ray misses or lies in a flat surface.
 std::optional<Root> nearest_root(const Shape& shape, const Ray& ray);
 
 }  // namespace orrery::exact

@@ -1,5 +1,4 @@
-// Mistakes of measured and promised errors (13), which tests of averages can miss.
-// faults.mjs describes the fields.
+// Mistakes in measured and certified errors (13), which tests of averages can miss.
 
 export const certificateFaults = [
   {
@@ -13,7 +12,7 @@ export const certificateFaults = [
   },
   {
     fault: 13,
-    about: "the confidence interval of a mean is that of one round",
+    about: "the confidence interval of a mean is that of a single value",
     file: "core/study/interval.cpp",
     from: "std::sqrt(squares / (count - 1) / count)",
     to: "std::sqrt(squares / (count - 1))",
@@ -58,12 +57,12 @@ export const certificateFaults = [
   },
   {
     fault: 13,
-    about: "the bound of skipped light has one channel",
+    about: "the bound of skipped light ignores the blue channel",
     file: "core/techniques/wavefront.cpp",
     from: "product(weight.z[lane], range.z)",
     to: "T(0)",
     target: "test_render",
-    tests: ["Ledger.BoundsTheErrorOfRandomScenes"],
+    tests: ["Ledger.BoundsErrorOfRandomScenes"],
   },
   {
     fault: 13,
@@ -72,18 +71,18 @@ export const certificateFaults = [
     from: "out_->omitted[slot] + most",
     to: "largest(out_->omitted[slot], most)",
     target: "test_render",
-    tests: ["Ledger.BoundsTheErrorOfRandomScenes"],
+    tests: ["Ledger.BoundsErrorOfRandomScenes"],
   },
   {
     fault: 13,
-    about: "an upper bound ignores values that no sample has seen",
+    about: "an upper bound ignores values that no sample has",
     file: "core/render/unit_histogram.cpp",
     from: "double kept = std::max(mean(), 1e-18), rejected = 1;",
     to: "return mean(); double kept = 0, rejected = 1;",
     target: "test_render",
     tests: [
       "UpperMean.FollowsRuleOfThreeWithoutEvents*",
-      "UpperMean.HoldsForRareErrors*",
+      "UpperMean.BoundsMeanOfRareErrors*",
       "Certificate.NeverReportsZeroErrorFromSamples*",
     ],
   },
@@ -103,11 +102,11 @@ export const certificateFaults = [
     from: "std::max(kind, other.kind)",
     to: "std::min(kind, other.kind)",
     target: "test_render",
-    tests: ["Certificate.IsAsWeakAsItsWeakestTerm*"],
+    tests: ["Certificate.HasKindOfWeakestTerm*"],
   },
   {
     fault: 13,
-    about: "an image takes the bound of its last pass",
+    about: "an image uses only the bound of its last pass",
     file: "core/render/frame.cpp",
     from: "if (samples_ > 0) stats_.join(before);",
     to: "",
@@ -143,7 +142,7 @@ export const certificateFaults = [
   },
   {
     fault: 13,
-    about: "a certificate omits light that paths cannot find",
+    about: "a certificate ignores light that paths cannot find",
     file: "core/plan/plan.cpp",
     from: "if (loses_caustics(scene_, plan_))",
     to: "if (false)",
@@ -161,12 +160,12 @@ export const certificateFaults = [
   },
   {
     fault: 13,
-    about: "an audit reports its share without a confidence bound",
+    about: "an audit reports its sampled error without a confidence bound",
     file: "core/study/audit.cpp",
     from: "range * std::sqrt(shares.upper_mean(Certificate::kAlpha))",
     to: "found.rms",
     target: "test_render",
-    tests: ["Audit.BoundsTheShareOfWrongPixels*"],
+    tests: ["Audit.BoundsErrorOfSingleWrongPixel*"],
   },
   {
     fault: 13,

@@ -29,9 +29,9 @@ import { faults as all } from "./faults.mjs";
 import { kRoot, planted } from "./planted.mjs";
 import { unitsWith } from "./units.mjs";
 
-const kTestMinutes = 2; // a fault may also keep a test from ending
+const kTestMinutes = 2; // a fault may make a test hang
 const kNamesShown = 4;
-// Test executables that start the program.
+// Test executables that run the program.
 const kTargetsOfTheProgram = ["test_commands", "test_http"];
 
 class Stop extends Error {}
@@ -57,10 +57,11 @@ function changedFiles(revision) {
   return new Set(`${git("diff", "-z", "--name-only", base)}${untracked}`.split("\0").filter(Boolean));
 }
 
-// Deals the faults to the shards in turn, since neighbours in the list often need the same long build.
+// Assigns the faults to the shards round-robin, because neighbours in the list often need the same long
+// build.
 function shardOf(faults, text) {
   const [, k, n] = text.match(/^(\d+)\/(\d+)$/)?.map(Number) ?? [];
-  if (!(k >= 1 && k <= n)) throw new Stop(`--shard: expected K/N with 1 <= K <= N, got "${text}"`);
+  if (!(k >= 1 && k <= n)) throw new Stop(`--shard: must be K/N with 1 <= K <= N (got ${text})`);
   return faults.filter((_, index) => index % n === k - 1);
 }
 
@@ -108,7 +109,8 @@ class Copy {
   constructor(folder) {
     this.source = join(folder, "source");
     this.build = join(folder, "build");
-    // ccache ignores the path of the folder, so that a new temporary folder reuses the objects of the last one.
+    // With CCACHE_BASEDIR, ccache ignores the path of the folder, so a new temporary folder reuses earlier
+    // objects.
     this.environment = {
       CCACHE_BASEDIR: folder,
       TEST_EXHAUSTIVE: "yes",
@@ -148,7 +150,8 @@ class Copy {
       [...output.matchAll(new RegExp(`^\\[ *${mark} *\\] ([^\\s,]+)`, "gm"))].map((match) => match[1]);
     const ran = names("RUN"),
       succeeded = new Set([...names("OK"), ...names("SKIPPED")]);
-    return { passed, output, ran, failed: ran.filter((name) => !succeeded.has(name)) }; // or did not end
+    // Includes tests that did not end.
+    return { passed, output, ran, failed: ran.filter((name) => !succeeded.has(name)) };
   }
   // Calls act() while `fault` is applied to the copy.
   withFault(fault, act) {
@@ -161,7 +164,8 @@ class Copy {
       this.change(fault, original);
     }
   }
-  // Keeps the time of the file if units.mjs lists the units to recompile.
+  // Writes `text` to the file of the fault. If units.mjs lists units for it, the file keeps its modification
+  // time and only these units are touched.
   change(fault, text) {
     const path = join(this.source, fault.file),
       { atime, mtime } = statSync(path),
@@ -171,7 +175,7 @@ class Copy {
     utimesSync(path, atime, mtime);
     const now = new Date();
     const seen = this.units().filter((unit) => units.some((beginning) => unit.startsWith(beginning)));
-    if (seen.length === 0) throw new Stop(`${fault.file}: no unit is called ${units.join(", ")}`);
+    if (seen.length === 0) throw new Stop(`${fault.file}: no translation unit begins with ${units.join(", ")}`);
     for (const unit of seen) utimesSync(join(this.source, unit), now, now);
   }
   units() {
@@ -191,10 +195,10 @@ function checkSound(copy, faults) {
   const patterns = new Map();
   for (const { target, tests } of faults) patterns.set(target, [...(patterns.get(target) ?? []), ...tests]);
   const built = copy.buildTargets([...patterns.keys()]);
-  if (!built.passed) throw new Stop(`the copy does not build:\n${tail(built.output)}`);
+  if (!built.passed) throw new Stop(`cannot build the copy:\n${tail(built.output)}`);
   for (const [target, wanted] of patterns) {
     const { passed, output, ran } = copy.test(target, [...new Set(wanted)]);
-    if (!passed) throw new Stop(`${target} fails without any fault:\n${tail(output)}`);
+    if (!passed) throw new Stop(`${target} fails without a fault:\n${tail(output)}`);
     const idle = wanted.filter((pattern) => !ran.some((name) => matches(pattern, name)));
     if (idle.length > 0) throw new Stop(`${target} has no test ${idle.join(", ")}`);
   }
@@ -211,7 +215,7 @@ function check(copy, fault) {
   });
 }
 
-// Returns how many faults were caught.
+// Returns the number of faults that were caught.
 function checkAll(faults, folder) {
   const copy = new Copy(folder);
   copy.configure();
@@ -247,13 +251,13 @@ async function main() {
   const faces = new Set(faults.map(({ fault }) => fault)).size;
   if (options.compile) {
     const compiling = await compileFaults(faults);
-    console.log(`faults: ${compiling} of ${faults.length} compile, faces of ${faces}`);
+    console.log(`faults: ${compiling} of ${faults.length} compile, variants of ${faces} mistakes`);
     return compiling === faults.length;
   }
   const folder = options.folder ? resolve(options.folder) : mkdtempSync(join(tmpdir(), "orrery-faults-"));
   try {
     const caught = faults.length === 0 ? 0 : checkAll(faults, folder);
-    console.log(`faults: ${caught} of ${faults.length} caught, faces of ${faces}`);
+    console.log(`faults: ${caught} of ${faults.length} caught, variants of ${faces} mistakes`);
     return caught === faults.length;
   } finally {
     if (!options.folder) rmSync(folder, { recursive: true, force: true });

@@ -1,6 +1,6 @@
-// Checks that the code compiles with a fault in it, without a build. The changed file is stored in a folder of its
-// own, which is first in the include path. The compiler reads a source that includes it with -fsyntax-only and the
-// flags of build/compile_commands.json.
+// Checks that the code compiles with a fault in it, without a build. The changed file is written to a
+// temporary folder, which is first in the include path. The compiler checks a source that includes the file
+// with -fsyntax-only and the flags of build/compile_commands.json.
 
 import { spawn } from "node:child_process";
 import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -12,7 +12,7 @@ import { kRoot, planted } from "./planted.mjs";
 // Returns the sources that build/ compiles, as a map from their path to {command, directory}.
 function readCommands() {
   const file = join(kRoot, "build/compile_commands.json");
-  if (!existsSync(file)) throw new Error(`${file} is missing: run script/setup`);
+  if (!existsSync(file)) throw new Error(`cannot find ${file}: run script/setup first`);
   const commands = new Map();
   for (const { file: compiled, command, directory } of JSON.parse(readFileSync(file, "utf8")))
     for (const source of sourcesOf(compiled))
@@ -39,8 +39,8 @@ function reaches(path, target, seen = new Set()) {
   return includesOf(path).some((next) => reaches(next, target, seen));
 }
 
-// Returns the source to compile for a fault in `file`: the file, its namesake, or one that includes it. Sources in the
-// same folder are preferred.
+// Returns the source to compile for a fault in `file`: the file, the source of the same name, or a source
+// that includes it. Sources in the same folder are preferred.
 function sourceFor(file, commands) {
   const namesake = file.replace(/\.h$/, ".cpp");
   if (commands.has(namesake)) return namesake;

@@ -1,4 +1,4 @@
-// Known mistakes, each put back into the code. check.mjs applies them one at a time to a copy of the tree and
+// Known mistakes as changes of the code. check.mjs applies them one at a time to a copy of the tree and
 // expects the named tests to fail.
 //
 //   fault    number of the mistake; several entries can be variants of one
@@ -7,8 +7,8 @@
 //   target   the GoogleTest executable
 //   tests    patterns for --gtest_filter; at least one test of each must fail
 //
-// The list holds the ten mistakes of textbooks and those that only a statistical test or a test under load can
-// detect. Other tests need no entry: break the code once by hand and see the test fail.
+// The list contains the ten mistakes of textbooks, and mistakes that only a statistical test or a test under
+// load can detect. Other tests need no entry: break the code once by hand and see the test fail.
 
 import { certificateFaults } from "./certificates.mjs";
 import { serviceFaults } from "./service.mjs";

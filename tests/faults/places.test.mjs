@@ -1,6 +1,6 @@
 #!/usr/bin/env node
-// Checks that every fault of faults.mjs applies: its text occurs exactly once in its file and changes, and the sources
-// of its target define its tests.
+// Checks that every fault of faults.mjs applies. Its `from` must occur exactly once in its file and differ
+// from `to`, and the sources of its target must define its tests.
 
 import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -18,7 +18,7 @@ function sourcesOf(target) {
     .join("\n");
 }
 
-// Returns whether the sources define the suite of a pattern.
+// Returns true if the sources define the test suite of a pattern.
 const names = (sources, pattern) =>
   pattern
     .split(".")[0]
@@ -30,7 +30,7 @@ function problemOf(fault) {
   if (problem) return problem;
   const sources = sourcesOf(fault.target);
   const unknown = fault.tests.filter((pattern) => !names(sources, pattern));
-  return unknown.length > 0 ? `${fault.target} has no ${unknown.join(", ")}` : "";
+  return unknown.length > 0 ? `${fault.target} has no test ${unknown.join(", ")}` : "";
 }
 
 let problems = 0;

@@ -6,14 +6,14 @@ import { fileURLToPath } from "node:url";
 
 export const kRoot = resolve(dirname(fileURLToPath(import.meta.url)), "../..");
 
-// Returns {original, text}: the file below `root` without and with the fault. Returns {problem} if the text of the
-// fault does not occur exactly once.
+// Returns {original, text}: the file below `root` without and with the fault. Returns {problem} unless `from`
+// occurs exactly once.
 export function planted({ file, from, to }, root = kRoot) {
   const path = join(root, file);
-  if (!existsSync(path)) return { problem: `${file} is missing` };
+  if (!existsSync(path)) return { problem: `cannot find ${file}` };
   const original = readFileSync(path, "utf8");
   const count = original.split(from).length - 1;
-  if (count !== 1) return { problem: `its text occurs ${count} times in ${file}, not once` };
+  if (count !== 1) return { problem: `"from" must occur once in ${file} (got ${count})` };
   const text = original.replace(from, () => to);
-  return text === original ? { problem: `it changes nothing in ${file}` } : { original, text };
+  return text === original ? { problem: `"to" must differ from "from" in ${file}` } : { original, text };
 }

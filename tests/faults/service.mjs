@@ -1,10 +1,9 @@
-// Mistakes of the service (14) that need load or a hostile client to show.
-// faults.mjs describes the fields.
+// Mistakes in the service (14) that show only under load or with a hostile client.
 
 export const serviceFaults = [
   {
     fault: 14,
-    about: "the last of two Content-Length headers counts",
+    about: "the last of two Content-Length headers is used",
     file: "server/http/head.cpp",
     from: 'if (head.content_length) throw HttpError(400, "duplicate Content-Length header");',
     to: "",
@@ -81,7 +80,7 @@ export const serviceFaults = [
     from: "if (first) return make_for_all",
     to: "if (true) return make_for_all",
     target: "test_app",
-    tests: ["Pictures.MakesConcurrentlyRequestedPictureOnce*"],
+    tests: ["Pictures.RendersConcurrentlyRequestedImageOnce*"],
   },
   {
     fault: 14,

@@ -1,5 +1,4 @@
-// Mistakes of acceleration structures (11).
-// faults.mjs describes the fields.
+// Mistakes in acceleration structures (11).
 
 export const structureFaults = [
   {
@@ -22,7 +21,7 @@ export const structureFaults = [
   },
   {
     fault: 11,
-    about: "a shadow ray without a verified prediction counts as unoccluded",
+    about: "a shadow ray without a verified prediction is treated as unoccluded",
     file: "core/stages/prediction.cpp",
     from: "this->behind_->occlude(rays, with_active_rays(rays, active), counts);",
     to: "",
@@ -58,7 +57,7 @@ export const structureFaults = [
   },
   {
     fault: 11,
-    about: "refitting keeps the boxes of the former moment",
+    about: "refitting keeps the boxes of the previous time",
     file: "core/accelerators/wide_tree.h",
     from: "return of_pack.empty() ? before : of_pack[Blocks<T>::block_of(child)];",
     to: "return of_pack.empty() ? before : before;",

@@ -1,5 +1,4 @@
-// Mistakes 1 to 10: those that textbooks and slides on ray tracing make.
-// faults.mjs describes the fields.
+// Mistakes 1 to 10, found in textbooks and slides on ray tracing. faults.mjs describes the fields.
 
 export const textbookFaults = [
   {
@@ -13,7 +12,7 @@ export const textbookFaults = [
   },
   {
     fault: 1,
-    about: "cylinder rays along the axis (A = 0) have no case of their own",
+    about: "cylinder rays along the axis (A = 0) are not handled separately",
     file: "core/shapes/cylinder.h",
     from: "const auto parallel = a == zero;",
     to: "const auto parallel = a < zero;",
@@ -22,7 +21,7 @@ export const textbookFaults = [
   },
   {
     fault: 2,
-    about: "a cylinder whose base is the origin counts as infinite",
+    about: "a cylinder whose base is the origin is treated as infinite",
     file: "core/shapes/cylinder.cpp",
     from: "radius, length(top - base) / 2, reach});",
     to: "radius, base == Vec3d() ? infinity : length(top - base) / 2, reach});",
@@ -31,7 +30,7 @@ export const textbookFaults = [
   },
   {
     fault: 2,
-    about: "a cylinder whose top is the origin counts as infinite",
+    about: "a cylinder whose top is the origin is treated as infinite",
     file: "core/shapes/cylinder.cpp",
     from: "radius, length(top - base) / 2, reach});",
     to: "radius, top == Vec3d() ? infinity : length(top - base) / 2, reach});",
@@ -40,7 +39,7 @@ export const textbookFaults = [
   },
   {
     fault: 3,
-    about: "the direction of a directional light keeps its length",
+    about: "the direction of a directional light is not normalized",
     file: "core/lights/directional.cpp",
     from: 'const Vec3d from = p.direction("direction_to_light",',
     to: 'const Vec3d from = p.point("direction_to_light",',
@@ -49,7 +48,7 @@ export const textbookFaults = [
   },
   {
     fault: 3,
-    about: "the beam of a spot keeps its length",
+    about: "the direction of a spot light is not normalized",
     file: "core/lights/spot.cpp",
     from: 'const Vec3d direction = p.direction("direction",',
     to: 'const Vec3d direction = p.point("direction",',
@@ -58,7 +57,7 @@ export const textbookFaults = [
   },
   {
     fault: 3,
-    about: "the way to a point light is as long as the distance",
+    about: "the direction to a point light is not normalized",
     file: "core/lights/point.h",
     from: "return {toward / distance,",
     to: "return {toward,",
@@ -67,7 +66,7 @@ export const textbookFaults = [
   },
   {
     fault: 3,
-    about: "the way to a spot is as long as the distance",
+    about: "the direction to a spot light is not normalized",
     file: "core/lights/spot.h",
     from: "const Vec3<N> to_light = toward / distance;",
     to: "const Vec3<N> to_light = toward;",
@@ -76,7 +75,7 @@ export const textbookFaults = [
   },
   {
     fault: 3,
-    about: "no direction of any input is normalised",
+    about: "no input direction is normalized",
     file: "core/params/params.cpp",
     from: "return safe_normalize(do_three(key, doc, Kind::direction, range, fallback));",
     to: "return do_three(key, doc, Kind::direction, range, fallback);",
@@ -85,7 +84,7 @@ export const textbookFaults = [
   },
   {
     fault: 4,
-    about: "rays leave a surface by one fixed step",
+    about: "secondary rays start at a fixed offset from the surface",
     file: "core/shapes/primitive_set.h",
     from: "out.step.put(i, mine, s.magnitude * (8 * std::numeric_limits<T>::epsilon()));",
     to: "out.step.put(i, mine, N(T(1e-4)));",
@@ -94,7 +93,7 @@ export const textbookFaults = [
   },
   {
     fault: 4,
-    about: "rays leave a surface by one fixed step, seen in pictures",
+    about: "secondary rays start at a fixed offset from the surface (tested with images)",
     file: "core/shapes/primitive_set.h",
     from: "out.step.put(i, mine, s.magnitude * (8 * std::numeric_limits<T>::epsilon()));",
     to: "out.step.put(i, mine, N(T(1e-4)));",
@@ -184,7 +183,7 @@ export const textbookFaults = [
   },
   {
     fault: 5,
-    about: "a ray inside glass keeps the outside ratio of indices",
+    about: "a ray inside glass uses the outside ratio of indices",
     file: "core/materials/refractive.h",
     from: "const N eta = select(inside, ior, N(one / ior));",
     to: "const N eta = N(one / ior);",
@@ -193,7 +192,7 @@ export const textbookFaults = [
   },
   {
     fault: 5,
-    about: "Schlick's approximation keeps the inside angle",
+    about: "Schlick's approximation uses the inside angle",
     file: "core/materials/refractive.h",
     from: "const N thinner = select(eta > one, cos_transmitted, cos_incident);",
     to: "const N thinner = cos_incident;",
@@ -202,16 +201,16 @@ export const textbookFaults = [
   },
   {
     fault: 5,
-    about: "a ray inside glass keeps the outside normal",
+    about: "the shading normal is not flipped for rays inside a body",
     file: "core/shapes/primitive_set.h",
     from: "out.normal.put(i, mine, s.normal * side);",
     to: "out.normal.put(i, mine, s.normal);",
     target: "test_techniques",
-    tests: ["Slab.ShiftsRayWithoutTurningIt", "BallLens.*"],
+    tests: ["Slab.ShiftsRayWithoutChangingDirection", "BallLens.*"],
   },
   {
     fault: 5,
-    about: "a ray inside a body keeps the outside true normal",
+    about: "the geometric normal is not flipped for rays inside a body",
     file: "core/shapes/primitive_set.h",
     from: "out.geometric.put(i, mine, s.geometric * side);",
     to: "out.geometric.put(i, mine, s.geometric);",
@@ -220,16 +219,16 @@ export const textbookFaults = [
   },
   {
     fault: 5,
-    about: "every ray counts as coming from the outside",
+    about: "every ray is treated as coming from outside",
     file: "core/shapes/primitive_set.h",
     from: "out.side.put(i, mine, side);",
     to: "out.side.put(i, mine, N(1));",
     target: "test_techniques",
-    tests: ["Slab.ShiftsRayWithoutTurningIt", "Prism.*"],
+    tests: ["Slab.ShiftsRayWithoutChangingDirection", "Prism.*"],
   },
   {
     fault: 6,
-    about: "beyond the critical angle light leaves that should be mirrored",
+    about: "beyond the critical angle, reflection is not total",
     file: "core/materials/refractive.h",
     from: "return {select(total, one, r),",
     to: "return {select(total, fresnel_schlick(f0, cos_incident), r),",
@@ -238,7 +237,7 @@ export const textbookFaults = [
   },
   {
     fault: 6,
-    about: "light is lost on its way into glass",
+    about: "glass transmits (1 - R)^2 of the light instead of 1 - R",
     file: "core/materials/refractive.cpp",
     from: "Vec3<N>(one - split.reflectance)",
     to: "Vec3<N>((one - split.reflectance) * (one - split.reflectance))",
@@ -247,7 +246,7 @@ export const textbookFaults = [
   },
   {
     fault: 7,
-    about: "metal takes the fifth power of 1 - cos with a negative cosine",
+    about: "metal computes (1 - cos)^5 with a negative cosine",
     file: "core/materials/reflective.cpp",
     from: "metal.reflectance(min_first(one, max_first(zero, cosine)))",
     to: "metal.reflectance(cosine)",
@@ -256,7 +255,7 @@ export const textbookFaults = [
   },
   {
     fault: 7,
-    about: "glass takes the fifth power of 1 - cos with a negative cosine",
+    about: "glass computes (1 - cos)^5 with a negative cosine",
     file: "core/materials/refractive.h",
     from: "const N cos_incident = min_first(one, max_first(zero, N(-dot(direction, normal))));",
     to: "const N cos_incident = N(-dot(direction, normal));",
@@ -265,7 +264,7 @@ export const textbookFaults = [
   },
   {
     fault: 7,
-    about: "a highlight is an even power of a negative cosine",
+    about: "a highlight uses the absolute value of a negative cosine",
     file: "core/materials/rough.h",
     from: "return min_first(N(T(1)), max_first(N(T(0)), c));",
     to: "return min_first(N(T(1)), select(c < N(T(0)), N(-c), c));",
@@ -274,7 +273,7 @@ export const textbookFaults = [
   },
   {
     fault: 8,
-    about: "both axes are centred by the height",
+    about: "both image axes are centred by the height",
     file: "core/cameras/camera_of.h",
     from: "- T(width)) * scale;",
     to: "- T(height)) * scale;",
@@ -283,7 +282,7 @@ export const textbookFaults = [
   },
   {
     fault: 8,
-    about: "both axes are stretched to the same extent",
+    about: "both image axes have the same extent",
     file: "core/cameras/camera_of.h",
     from: "- T(width)) * scale;",
     to: "- T(width)) * (scale * T(height) / T(width));",
@@ -292,7 +291,7 @@ export const textbookFaults = [
   },
   {
     fault: 8,
-    about: "both axes are stretched to the same extent, seen in pictures",
+    about: "both image axes have the same extent (tested with images)",
     file: "core/cameras/camera_of.h",
     from: "- T(width)) * scale;",
     to: "- T(width)) * (scale * T(height) / T(width));",
@@ -301,7 +300,7 @@ export const textbookFaults = [
   },
   {
     fault: 9,
-    about: "a NaN on the near side of a slab loses the box",
+    about: "a NaN distance to the near plane makes a ray miss a bounding box",
     file: "core/math/bounds.h",
     from: "near = max_first(near, select(negative, t1, t0));",
     to: "near = max_first(N(select(negative, t1, t0)), near);",
@@ -310,7 +309,7 @@ export const textbookFaults = [
   },
   {
     fault: 9,
-    about: "a NaN on the far side of a slab loses the box",
+    about: "a NaN distance to the far plane makes a ray miss a bounding box",
     file: "core/math/bounds.h",
     from: "far = min_first(far, N(select(negative, t0, t1) * kFarPad));",
     to: "far = min_first(N(select(negative, t0, t1) * kFarPad), far);",
@@ -319,7 +318,7 @@ export const textbookFaults = [
   },
   {
     fault: 9,
-    about: "near <= far is decided without a margin for rounding",
+    about: "near <= far has no margin for rounding",
     file: "core/math/bounds.h",
     from: "constexpr T kFarPad = 1 + 4 * std::numeric_limits<T>::epsilon();",
     to: "constexpr T kFarPad = 1;",
@@ -328,7 +327,7 @@ export const textbookFaults = [
   },
   {
     fault: 9,
-    about: "a NaN where a ray enters a box shape loses the hit",
+    about: "a NaN entry distance makes a ray miss a box shape",
     file: "core/shapes/box.h",
     from: "enter = max_first(enter, N((select(negative, hi_i, lo_i) - o) / d));",
     to: "enter = max_first(N((select(negative, hi_i, lo_i) - o) / d), enter);",
@@ -337,7 +336,7 @@ export const textbookFaults = [
   },
   {
     fault: 9,
-    about: "a NaN where a ray leaves a box shape loses the hit",
+    about: "a NaN exit distance makes a ray miss a box shape",
     file: "core/shapes/box.h",
     from: "leave = min_first(leave, N((select(negative, lo_i, hi_i) - o) / d));",
     to: "leave = min_first(N((select(negative, lo_i, hi_i) - o) / d), leave);",
@@ -346,7 +345,7 @@ export const textbookFaults = [
   },
   {
     fault: 9,
-    about: "a NaN at the near cap of a cylinder loses the hit",
+    about: "a NaN distance to the near cap makes a ray miss a cylinder",
     file: "core/shapes/cylinder.h",
     from: "max_first(select(parallel, -infinity, min_first(t0, t1)), near_cap);",
     to: "max_first(near_cap, select(parallel, -infinity, min_first(t0, t1)));",
@@ -355,7 +354,7 @@ export const textbookFaults = [
   },
   {
     fault: 9,
-    about: "a NaN at the far cap of a cylinder loses the hit",
+    about: "a NaN distance to the far cap makes a ray miss a cylinder",
     file: "core/shapes/cylinder.h",
     from: "min_first(select(parallel, infinity, max_first(t0, t1)), far_cap);",
     to: "min_first(far_cap, select(parallel, infinity, max_first(t0, t1)));",
@@ -364,7 +363,7 @@ export const textbookFaults = [
   },
   {
     fault: 9,
-    about: "a kd-tree's ray visits one side of a plane only",
+    about: "a ray visits only one side of a kd-tree's split plane",
     file: "core/accelerators/space_tree.h",
     from: "if (enters_far) later[waiting++] = far;",
     to: "",
@@ -373,7 +372,7 @@ export const textbookFaults = [
   },
   {
     fault: 9,
-    about: "planes are crossed at one distance, without a margin for rounding",
+    about: "split planes are crossed without a margin for rounding",
     file: "core/accelerators/box_testers.h",
     from: "const T pad = max_component(abs(ray.origin)) * kRounding<T>;",
     to: "const T pad = 0;",
@@ -382,7 +381,7 @@ export const textbookFaults = [
   },
   {
     fault: 10,
-    about: "coefficients must be at most 0",
+    about: "coefficients must be <= 0 instead of >= 0",
     file: "core/params/params.cpp",
     from: "Kind::coefficient, {.min = 0, .max = max}",
     to: "Kind::coefficient, {.min = -max, .max = 0}",
@@ -391,16 +390,16 @@ export const textbookFaults = [
   },
   {
     fault: 10,
-    about: "glass may make light stronger on its way inside",
+    about: "a filter above 1 is accepted, so glass can amplify light",
     file: "core/materials/refractive.cpp",
-    from: '"Share of light that remains after one metre inside, per channel.", Vec3d(1), 1);',
-    to: '"Share of light that remains after one metre inside, per channel.", Vec3d(1));',
+    from: '"Transmittance after one metre inside, 0 to 1 per channel.", Vec3d(1), 1);',
+    to: '"Transmittance after one metre inside, 0 to 1 per channel.", Vec3d(1));',
     target: "test_load",
     tests: ["Load.RejectsReflectancesOutsideUnitInterval"],
   },
   {
     fault: 10,
-    about: "the share that a metal mirrors is below 0",
+    about: "the reflectance of metal is negative",
     file: "core/materials/reflective.cpp",
     from: "out.reflectance.put(i, mine, metal.",
     to: "out.reflectance.put(i, mine, -metal.",
@@ -409,7 +408,7 @@ export const textbookFaults = [
   },
   {
     fault: 10,
-    about: "the share that glass mirrors is below 0",
+    about: "the reflectance of glass is negative",
     file: "core/materials/refractive.cpp",
     from: "out.reflectance.put(i, mine, Vec3<N>(split.reflectance));",
     to: "out.reflectance.put(i, mine, Vec3<N>(-split.reflectance));",
@@ -418,7 +417,7 @@ export const textbookFaults = [
   },
   {
     fault: 10,
-    about: "the share that glass lets through is below 0",
+    about: "the transmittance of glass is negative",
     file: "core/materials/refractive.cpp",
     from: "out.transmittance.put(i, mine, Vec3<N>(one - split.reflectance));",
     to: "out.transmittance.put(i, mine, Vec3<N>(split.reflectance - one));",
@@ -427,7 +426,7 @@ export const textbookFaults = [
   },
   {
     fault: 10,
-    about: "the tree of rays is one level deeper than asked",
+    about: "the ray tree is one level deeper than max_depth",
     file: "core/techniques/specular_tree.cpp",
     from: "if (paths.depth >= plan.max_depth)",
     to: "if (paths.depth > plan.max_depth)",
@@ -436,7 +435,7 @@ export const textbookFaults = [
   },
   {
     fault: 10,
-    about: "every surface sends on two rays, needed or not",
+    about: "every surface spawns both secondary rays, even with weight 0",
     file: "core/techniques/specular_tree.cpp",
     from: "const auto wanted = mask && max_component(weight) > N(T(0));",
     to: "const auto wanted = mask;",
@@ -445,7 +444,7 @@ export const textbookFaults = [
   },
   {
     fault: 10,
-    about: "the tree of rays does not branch",
+    about: "the ray tree does not branch",
     file: "core/techniques/whitted.cpp",
     from: "this->follow(Kind::refracted, i, mine, specular.refracted.at(i), specular.transmittance.at(i));",
     to: "",
@@ -454,16 +453,16 @@ export const textbookFaults = [
   },
   {
     fault: 10,
-    about: "the count of rays grows with the objects",
+    about: "the ray count is multiplied by the number of primitives",
     file: "core/techniques/wavefront.cpp",
     from: "+= static_cast<std::uint64_t>(reflected_->rays.count);",
     to: "+= static_cast<std::uint64_t>(reflected_->rays.count) * geometry_.material_of.size();",
     target: "test_techniques",
-    tests: ["RayTree.GrowsWithBranchesNotObjects"],
+    tests: ["RayTree.GrowsWithBranchesButNotWithObjects"],
   },
   {
     fault: 10,
-    about: "the list's tests of objects grow by their square",
+    about: "the list counts n^2 tests per ray for n primitives",
     file: "core/accelerators/exhaustive.h",
     from: "counts.primitive_tests += primitives.size() * active_rays(rays, groups);",
     to: "counts.primitive_tests += primitives.size() * primitives.size() * active_rays(rays, groups);",

@@ -1,5 +1,4 @@
-// Mistakes of light transport (12), whose images look right.
-// faults.mjs describes the fields.
+// Mistakes in light transport (12) that produce plausible images.
 
 export const transportFaults = [
   {
@@ -58,7 +57,7 @@ export const transportFaults = [
   },
   {
     fault: 12,
-    about: "distributed ray tracing counts lamps twice",
+    about: "distributed ray tracing counts the light of lamps twice",
     file: "core/stages/sampled_light.cpp",
     from: "wants_diffuse_rays_ ? shadowed_.diffuse_pdf.at(i) : zero",
     to: "zero",

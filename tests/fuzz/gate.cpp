@@ -9,8 +9,8 @@
 #include "server/routes/problem.h"
 #include "server/routes/router.h"
 
-// Fuzzes one HTTP connection: the client sends any bytes and then closes its side. Every request gets a
-// response or the connection ends. All responses are complete and ours, even if the bytes try to inject one.
+// Fuzzes one HTTP connection. The client sends any bytes and then closes its side. The output must consist of
+// complete responses of the service, even if the bytes try to inject a response.
 
 namespace {
 
@@ -56,7 +56,7 @@ HttpServer::Handler make_handler(const Router& router) {
           .grace_over = [] {}};
 }
 
-// Aborts unless the bytes are responses of one connection: heads of known headers, bodies of the stated
+// Aborts unless `bytes` consists of complete responses with known headers, each with a body of the stated
 // length.
 void check_answers(std::string_view bytes) {
   while (!bytes.empty()) {

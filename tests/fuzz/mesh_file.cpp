@@ -5,7 +5,8 @@
 #include "core/meshes/mesh_file.h"
 #include "core/meshes/repair.h"
 
-// Fuzzes the mesh reader: any bytes are rejected, or read as a mesh that keeps the contract of its header.
+// Fuzzes the mesh reader. Any bytes are rejected or read as a mesh that satisfies the contract in the
+// reader's header.
 
 namespace {
 

@@ -6,8 +6,8 @@
 #include "server/http/target.h"
 #include "server/routes/answers.h"
 
-// Fuzzes the parsers of a target, an Accept and an If-None-Match header: any lines are rejected as invalid
-// input, or accepted.
+// Fuzzes the parsers of request targets and of the headers Accept and If-None-Match. Each parser accepts any
+// text or rejects it as invalid input.
 
 namespace {
 

@@ -4,8 +4,8 @@
 #include "core/base/error.h"
 #include "core/load/load.h"
 
-// Fuzzes the readers of scenes and requests: any text is rejected with problems that name their place, or
-// accepted. Canonical JSON of accepted text stays the same if it is parsed again.
+// Fuzzes the readers of scenes and requests. Any text is accepted or rejected with problems that state their
+// place. The canonical JSON of accepted text parses to the same canonical JSON.
 
 namespace {
 

@@ -41,7 +41,7 @@ struct TokenDaemon {
                     line("keeper", "read,write", "k") + line("filler", "write", "w") +
                     line("boss", "read,render,write,admin", "b"));
   std::string key = folder.write("key", std::string(32, 'k'));
-  Daemon daemon{{"--tokens-file", tokens, "--share-key-file", key}};
+  Daemon daemon{{"--tokens-file", tokens, "--link-signing-key-file", key}};
   httplib::Client client = daemon.client();
 };
 
@@ -119,7 +119,7 @@ TEST(Access, ReloadsTokensOnSighup) {
   guarded.daemon.signal(SIGHUP);
   EXPECT_EQ(becomes("o", 200), 200);
   EXPECT_EQ(status("r"), 401);
-  guarded.folder.write("tokens", line("other", "read,paint", "o"));  // no such scope
+  guarded.folder.write("tokens", line("other", "read,paint", "o"));  // "paint" is not a scope
   guarded.daemon.signal(SIGHUP);
   EXPECT_TRUE(test::eventually([&] { return guarded.daemon.metric("orrery_reload_failures_total") == 1; }));
   EXPECT_EQ(status("o"), 200);
@@ -139,7 +139,7 @@ TEST(Settings, ReloadsOriginsOnSighup) {
   daemon.signal(SIGHUP);
   EXPECT_TRUE(test::eventually([&] { return is_allowed("https://two.example"); }));
   EXPECT_FALSE(is_allowed("https://one.example"));
-  EXPECT_NE(json::parse(client.Get("/v1/limits")->body).at("jobs"), 7);  // it needs a restart
+  EXPECT_NE(json::parse(client.Get("/v1/limits")->body).at("jobs"), 7);  // `jobs` needs a restart
   // A changed `tokens_file` needs a restart, so the reload does not open it.
   write({{"cors_origins", {"https://one.example"}}, {"tokens_file", "/nowhere"}});
   daemon.signal(SIGHUP);
@@ -203,8 +203,8 @@ TEST(Access, PreventsStartWithInvalidFiles) {
   EXPECT_EQ(status_with("--tokens-file", line("alice", "paint", "a")), 2);
   EXPECT_EQ(status_with("--tokens-file", "# nobody\n"), 2);
   EXPECT_EQ(status_with("--tokens-file", "alice read " + sha256_hex("a").substr(1) + "\n"), 2);
-  EXPECT_EQ(status_with("--share-key-file", std::string(32, 'k')), 0);
-  EXPECT_EQ(status_with("--share-key-file", std::string(31, 'k')), 2);
+  EXPECT_EQ(status_with("--link-signing-key-file", std::string(32, 'k')), 0);
+  EXPECT_EQ(status_with("--link-signing-key-file", std::string(31, 'k')), 2);
   EXPECT_EQ(status_of("--tokens-file", "/nonexistent"), 2);
 }
 
@@ -241,7 +241,7 @@ TEST(Cors, RejectsWritesFromOtherOrigins) {
   EXPECT_EQ(post("https://a.example")->status, 200);
 }
 
-// An attacker can point a domain at this machine (DNS rebinding), which makes its pages same-origin.
+// An attacker's domain can resolve to this machine (DNS rebinding), which makes its pages same-origin.
 TEST(Cors, RejectsWritesThroughUnknownDomains) {
   const auto post = [](Daemon& daemon, const std::string& host) {
     const std::string here = host + ":" + std::to_string(daemon.port());
@@ -271,7 +271,7 @@ TEST(Cors, RejectsReadsThroughUnknownDomains) {
     EXPECT_EQ(status("/v1/limits", host), 200) << host;
   for (const char* host : {"evil.example", "evil.example:8080", "127.0.0.1.evil.example"})
     EXPECT_EQ(status("/v1/limits", host), 403) << host;
-  EXPECT_EQ(status("/", "evil.example"), 200) << "the page is nobody's secret";
+  EXPECT_EQ(status("/", "evil.example"), 200) << "the page is not confidential";
   TokenDaemon guarded;
   httplib::Headers headers = bearer("r");
   headers.emplace("Host", "render.example");

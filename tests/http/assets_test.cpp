@@ -54,10 +54,11 @@ TEST_F(Assets, RendersSceneWithMeshAsset) {
   EXPECT_TRUE(is_png(rendered->body));
   const std::string id = post_scene(scene.dump());
   EXPECT_EQ(client_.Delete("/v1/assets/" + hash)->status, 204);
-  EXPECT_EQ(client_.Get("/v1/scenes/" + id + "/frame.png?azimuth=20")->status, 200) << "the scene keeps it";
+  EXPECT_EQ(client_.Get("/v1/scenes/" + id + "/frame.png?azimuth=20")->status, 200)
+      << "the scene keeps the mesh";
 }
 
-TEST_F(Assets, StoresPictureAndLightsScene) {
+TEST_F(Assets, StoresImageAndLightsScene) {
   std::ifstream file("scenes/image-sky/sky.hdr", std::ios::binary);
   const std::string sky((std::istreambuf_iterator<char>(file)), {}), path = path_of(sky);
   auto scene = small_scene(
@@ -91,7 +92,7 @@ TEST_F(Assets, DoesNotReloadAssetsOfRenderedScene) {
   };
   EXPECT_EQ(render(10)->status, 200);
   EXPECT_EQ(client_.Delete("/v1/assets/" + hash)->status, 204);
-  EXPECT_EQ(render(20)->status, 200) << "nothing of it is loaded";
+  EXPECT_EQ(render(20)->status, 200) << "no asset is loaded again";
   EXPECT_EQ(client_.Post("/v1/scenes", scene.dump(), "application/json")->status, 201);
   EXPECT_EQ(client_.Post("/v1/scenes", scene.dump(), "application/json")->status, 200);
 }
@@ -116,7 +117,7 @@ TEST_F(Assets, ReportsInvalidHash) {
   EXPECT_NE(problem.at("detail").get<std::string>().find("64 digits"), std::string::npos) << problem;
 }
 
-// `explain` builds structures, and so has the time limit and priority of a render.
+// explain may build structures, so it has the time limit and priority of a render.
 TEST(Explain, RespectsRequestTimeout) {
   Daemon daemon({"--request-seconds", "1"});
   httplib::Client client = daemon.client();
@@ -151,7 +152,7 @@ TEST_F(Assets, AllowsRemovalByUploadersOnly) {
   expect_problem(other.Delete(path), 403);
   EXPECT_EQ(put(other), 200);
   EXPECT_EQ(client_.Delete(path)->status, 204);
-  EXPECT_EQ(client_.Get(path)->status, 200) << "the other client holds it";
+  EXPECT_EQ(client_.Get(path)->status, 200) << "the other client keeps the asset";
   expect_problem(client_.Delete(path), 403);
   expect_problem(third.Delete(path), 403);
   EXPECT_EQ(other.Delete(path)->status, 204);
@@ -185,7 +186,7 @@ TEST(AssetLimits, EnforcesAndReportsLimits) {
   const std::string large = kTetrahedron + "#" + std::string(200, 'x') + "\n";
   const auto refused = expect_problem(put(large), 413);
   EXPECT_NE(refused.at("detail").get<std::string>().find("asset_bytes"), std::string::npos);
-  std::vector<std::string> meshes;  // the store holds four of them
+  std::vector<std::string> meshes;  // the store has capacity for four
   for (int i = 0; i < 5; ++i) meshes.push_back(kTetrahedron + "# " + std::to_string(i) + "\n");
   const std::size_t held = 4800 / (meshes[0].size() + 1024);  // with overhead per entry
   for (const auto& mesh : meshes) EXPECT_EQ(put(mesh)->status, 201);

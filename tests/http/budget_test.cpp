@@ -15,20 +15,20 @@ TEST(ByteQuota, RejectsGrowthBeyondTotal) {
   std::optional<ByteQuota::Share> a(std::in_place, budget, "a");
   ByteQuota::Share b(budget, "b");
   a->grow(60);
-  a->grow(50);  // within what `a` already holds
+  a->grow(50);  // no growth, because `a` has 60
   b.grow(40);
   try {
     b.grow(41);
-    FAIL() << "41 bytes of 40";
+    FAIL() << "accepted 41 bytes with 40 left";
   } catch (const LimitExceeded& error) {
-    EXPECT_STREQ(error.what(), "some take 100 bytes, and 1 more are needed (limit 100, some_bytes)");
+    EXPECT_STREQ(error.what(), "some use 100 bytes and need 1 more (limit 100, some_bytes)");
     EXPECT_STREQ(error.limit(), "some_bytes");
   }
   a.reset();
   b.grow(100);
 }
 
-TEST(ByteQuota, LimitsClientToHalfOrOneShare) {
+TEST(ByteQuota, LimitsClientToHalfUnlessItHasOneShare) {
   ByteQuota budget(1'000'000, "some_bytes", "some");
   {
     ByteQuota::Share large(budget, "a"), more(budget, "a"), other(budget, "b");
@@ -74,7 +74,7 @@ TEST(ResponseQuota, LimitsClientToHalf) {
   const SharedBytes shared(std::string(150'000, 's')), other(std::string(100'000, 'o'));
   auto first = budget.take(shared, "a"), second = budget.take(shared, "b");
   EXPECT_THROW(budget.take(other, "a"), ClientLimitExceeded);
-  first.reset();  // a receives nothing more, but b does
+  first.reset();  // a has received its response, b has not
   first = budget.take(other, "a");
   EXPECT_THROW(budget.take(other, "b"), ClientLimitExceeded);
 }

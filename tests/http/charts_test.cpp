@@ -2,7 +2,7 @@
 
 #include "tests/http/daemon.h"
 
-// Tests charts of speed against accuracy, measured by the service.
+// Tests charts of accuracy against speed, measured by the service.
 namespace orrery {
 namespace {
 
@@ -18,7 +18,7 @@ json ends_on(const std::string& name) {
 
 using Cells = std::vector<std::vector<std::string>>;
 
-// Returns the cells of a CSV table, header line first.
+// Returns the rows of a CSV table, starting with the header.
 Cells cells(const std::string& csv) {
   Cells all;
   std::istringstream lines(csv);
@@ -32,7 +32,7 @@ Cells cells(const std::string& csv) {
   return all;
 }
 
-// Returns the expected table of these points.
+// Returns the expected table of a chart's points.
 Cells cells(const json& points) {
   Cells all(1);
   for (const std::string name :
@@ -88,7 +88,7 @@ TEST_F(ChartTest, ReturnsSvgCsvAndJson) {
   EXPECT_EQ(chart.at("image"), json({{"width", 16}, {"height", 12}}));
   EXPECT_EQ(chart.at("reference").at("samples"), 16);
   const auto rmse = [&](std::size_t i) { return chart.at("points").at(i).at("rmse").get<double>(); };
-  EXPECT_LT(rmse(5), rmse(4));  // 4 samples and 1, of the reference's technique
+  EXPECT_LT(rmse(5), rmse(4));  // 4 samples and 1 sample, technique of the reference
   EXPECT_GT(rmse(1), rmse(5));
   EXPECT_GT(chart.at("points").at(5).at("ssim"), chart.at("points").at(1).at("ssim"));
   for (const json& point : chart.at("points")) EXPECT_GT(point.at("cpu_ms").get<double>(), 0);
@@ -96,7 +96,7 @@ TEST_F(ChartTest, ReturnsSvgCsvAndJson) {
   EXPECT_NE(drawing->get_header_value("ETag"), table->get_header_value("ETag"));
 }
 
-TEST_F(ChartTest, ReportsPlanPictureIntervalAndCertificate) {
+TEST_F(ChartTest, ReportsPlanImageIntervalAndCertificate) {
   const json job = start(ends_on("whitted"));
   const json chart = json::parse(client_.Get(made(job) + ".json")->body);
   EXPECT_EQ(chart.at("noise_floor"), chart.at("reference").at("rmse"));
@@ -117,7 +117,7 @@ TEST_F(ChartTest, ReportsPlanPictureIntervalAndCertificate) {
     EXPECT_NEAR(full.at("seconds").get<double>(),
                 point.at("cpu_ms").get<double>() / 1000 / chart.at("threads").get<double>(), 1e-9);
     EXPECT_LE(point.at("ssim"), 1);
-    // The image is 16 pixels wide, so that both URLs name the same one.
+    // The images of the chart are 16 pixels wide, so both URLs return the same image.
     const auto picture = client_.Get(point.at("picture").get<std::string>());
     ASSERT_EQ(picture->status, 200) << picture->body;
     EXPECT_TRUE(client_.Get(scene_ + "/frame.png?" + point.at("plan").get<std::string>())->body ==
@@ -135,7 +135,7 @@ TEST_F(ChartTest, ReportsPlanPictureIntervalAndCertificate) {
   }
 }
 
-TEST_F(ChartTest, PredictsFullSizeFromSmallerPictures) {
+TEST_F(ChartTest, PredictsFullSizeFromSmallerImages) {
   json asked = ends_on("whitted");
   asked["image"] = {{"width", 1600}, {"height", 1200}};
   asked["chart"] = {{"samples", 1}, {"rounds", 1}, {"width", 16}};
@@ -166,7 +166,7 @@ TEST_F(ChartTest, PrefixesLinksBehindProxy) {
   EXPECT_EQ(daemon.client().Get(picture)->status, 200);
 }
 
-TEST_F(ChartTest, KeepsNoPictures) {
+TEST_F(ChartTest, KeepsNoImages) {
   Daemon daemon({"--job-bytes", "1"});
   const auto posted = daemon.client().Post("/v1/scenes", small_scene().dump(), kJson);
   const std::string path = posted->get_header_value("Location") + "/charts";

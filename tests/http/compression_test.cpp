@@ -11,7 +11,7 @@ namespace {
 
 const std::string kLong(5000, 'x');
 
-// Returns the response after compression for a client with this Accept-Encoding.
+// Returns the response after compression for a client that sends this Accept-Encoding.
 Response compressed(Response response, const std::string& accepts = "gzip") {
   Request request;
   request.headers = {{"Accept-Encoding", accepts}};
@@ -81,7 +81,7 @@ TEST(Compression, CompressesOnlyTextWithinSizeBounds) {
   EXPECT_FALSE(is_compressed(compressed(text(std::string((1 << 20) + 1, 'x')))));
 }
 
-// The compressed length could reveal a secret next to data chosen by the client.
+// The compressed length could reveal a secret that is in the same response as data chosen by the client.
 TEST(Compression, SkipsNoStoreResponses) {
   EXPECT_FALSE(is_compressed(compressed(text().set("Cache-Control", "no-store"))));
   EXPECT_FALSE(is_compressed(compressed(text().set("Cache-Control", "private, no-store"))));
@@ -93,7 +93,7 @@ TEST(Compression, WeakensETag) {
   EXPECT_EQ(find_field(compressed(text().set("ETag", "\"a\""), "").headers, "ETag"), "\"a\"");
 }
 
-// A 304 response carries the entity tag of the cached representation.
+// A 304 response has the entity tag of the representation that the client has cached.
 TEST(Compression, ReturnsKnownETagInNotModified) {
   const auto tag_for = [](const std::string& known) {
     Request request;

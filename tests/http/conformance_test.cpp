@@ -12,7 +12,7 @@ namespace {
 
 class Conformance : public HttpTest {
  protected:
-  // Returns the response to `bytes`, after which the daemon closes.
+  // Returns the response to `bytes`, which must close the connection.
   std::string answer_to(const std::string& bytes) {
     const RawClient raw(daemon().port());
     raw.send(bytes);
@@ -86,14 +86,14 @@ TEST(Shutdown, GivesPartialRequestsGracePeriod) {
   EXPECT_EQ(ends.receive_all().substr(9, 3), "200");
   for (const RawClient* raw : {&head, &body}) {
     const std::string answer = raw->receive_all();
-    EXPECT_EQ(answer.substr(9, 3), "503");  // a 408 would mean the usual timeout
+    EXPECT_EQ(answer.substr(9, 3), "503");  // 408 would be the usual timeout
     EXPECT_NE(answer.find("before the service shut down"), std::string::npos) << answer;
   }
   EXPECT_EQ(daemon.wait(), 0);
 }
 
-// Includes a client that shuts down its sending side long before it reads the response, which exceeds all
-// buffers.
+// Includes a client that shuts down its sending side long before it reads the response, which is larger than
+// all buffers.
 TEST(Disconnect, IsNotCountedAfterCompleteResponse) {
   Daemon daemon;
   for (int i = 0; i < 200; ++i) {

@@ -8,13 +8,13 @@
 #include <stdexcept>
 #include <thread>
 
-// Tests the minimum transfer rate against clients that trickle bytes.
+// Tests the minimum transfer rate with clients that send or read single bytes slowly.
 namespace orrery {
 namespace {
 
 constexpr Timeouts kBrief{.bytes_per_s = 1000, .window = std::chrono::seconds(1)};
 
-// Connection whose client sends or reads one byte per 5 ms.
+// Connection whose client sends or reads one byte every 5 ms.
 class Trickle {
  public:
   explicit Trickle(const std::string& head) {
@@ -54,7 +54,7 @@ void expect_too_slow(const std::string& framing, const std::string& begin) {
   ASSERT_TRUE(connection.wait_for_request());
   const Head head = connection.read_head();
   try {
-    connection.read_body(head, {1'000'000, "body_bytes"}, [](std::size_t) {});
+    connection.read_body(head, {1'000'000, "max_request_body_bytes"}, [](std::size_t) {});
     FAIL() << framing;
   } catch (const HttpError& error) {
     EXPECT_EQ(error.status(), 408) << error.what();

@@ -30,7 +30,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// Reads the next line of output and returns the port at its end. Returns 0 if the line does not start with
+// Reads the next line of output and returns the port at its end, or 0 if the line does not start with
 // `begin`.
 int port_from(int output, const std::string& begin) {
   std::string line;
@@ -38,7 +38,7 @@ int port_from(int output, const std::string& begin) {
   return line.rfind(begin, 0) == 0 ? std::stoi(line.substr(line.find_last_of(": ") + 1)) : 0;
 }
 
-// Appends the exchange to the file named by TEST_EXCHANGES, as one line of JSON. openapi.test.mjs checks the
+// Appends the exchange as one line of JSON to the file that TEST_EXCHANGES names. openapi.test.mjs checks the
 // file against the service's OpenAPI description.
 void record(const httplib::Request& request, const httplib::Response& response) {
   static std::ofstream* const file = [] {
@@ -81,7 +81,7 @@ std::vector<std::string> without_ray_limit(std::vector<std::string> arguments) {
 
 std::string program() {
   const char* path = std::getenv("TEST_ORRERY");
-  if (!path) throw std::runtime_error("TEST_ORRERY names no program");
+  if (!path) throw std::runtime_error("TEST_ORRERY must be the path of the program");
   return path;
 }
 
@@ -92,12 +92,12 @@ Daemon::Daemon(const std::vector<std::string>& arguments, std::optional<int> log
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
-  ::signal(SIGPIPE, SIG_IGN);  // a broken connection fails one test, not the whole run
+  ::signal(SIGPIPE, SIG_IGN);  // so that a broken connection fails only one test
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("pipe");
+  if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("cannot create a pipe");
   pid_ = fork();
   if (pid_ == 0) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);  // in case the test dies
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // if the test process ends
     ::signal(SIGPIPE, SIG_DFL);        // the default of a shell
     dup2(ends[1], STDOUT_FILENO);
     if (log) dup2(*log, STDERR_FILENO);
@@ -108,7 +108,7 @@ Daemon::Daemon(const std::vector<std::string>& arguments, std::optional<int> log
   output_ = ends[0];
   port_ = port_from(output_, "orrery listens on http://");
   health_port_ = port_from(output_, "health and metrics on port ");
-  if (port_ == 0 || health_port_ == 0) throw std::runtime_error("the daemon does not start");
+  if (port_ == 0 || health_port_ == 0) throw std::runtime_error("cannot start the daemon");
 }
 
 Daemon::~Daemon() {
@@ -195,11 +195,11 @@ RawClient::RawClient(int port, int receive_buffer, std::uint8_t from) : fd_(sock
   address.sin_family = AF_INET;
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK - 1 + from);
   if (bind(fd_, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0)
-    throw std::runtime_error("cannot take the address");
+    throw std::runtime_error("cannot bind the client address");
   address.sin_port = htons(static_cast<std::uint16_t>(port));
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   if (connect(fd_, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0)
-    throw std::runtime_error("cannot connect");
+    throw std::runtime_error("cannot connect to the daemon");
 }
 
 RawClient::~RawClient() { close(); }
@@ -223,7 +223,7 @@ void RawClient::send(const std::string& bytes) const {
   std::size_t sent = 0;
   while (sent < bytes.size()) {
     const ssize_t count = ::send(fd_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
-    if (count <= 0) return;  // the daemon stopped reading: its response says why
+    if (count <= 0) return;  // the daemon has stopped reading, and its response states the reason
     sent += static_cast<std::size_t>(count);
   }
 }
@@ -248,7 +248,7 @@ Daemon* HttpTest::daemon_ = nullptr;
 std::string HttpTest::post_scene(const std::string& scene) {
   const auto result = client_.Post("/v1/scenes", scene, "application/json");
   if (!result || (result->status != 200 && result->status != 201)) {
-    ADD_FAILURE() << (result ? result->body : "no answer");
+    ADD_FAILURE() << (result ? result->body : "no response");
     return {};
   }
   return nlohmann::json::parse(result->body).at("id");
@@ -284,7 +284,7 @@ nlohmann::json moving_scene() {
 
 nlohmann::json expect_problem(const httplib::Result& result, int status) {
   if (!result) {
-    ADD_FAILURE() << "no answer: " << httplib::to_string(result.error());
+    ADD_FAILURE() << "no response: " << httplib::to_string(result.error());
     return {};
   }
   EXPECT_EQ(result->status, status) << result->body;
@@ -305,14 +305,14 @@ std::vector<StreamedFrame> parse_frames(const std::string& body) {
   std::vector<StreamedFrame> frames;
   std::size_t at = 0;
   while (at < body.size()) {
-    if (at + 4 > body.size()) return ADD_FAILURE() << "a length breaks off", frames;
+    if (at + 4 > body.size()) return ADD_FAILURE() << "stream ends in a length", frames;
     std::size_t length = 0;
     for (int i = 0; i < 4; ++i) length = length << 8 | static_cast<unsigned char>(body[at++]);
-    if (at + length > body.size()) return ADD_FAILURE() << "a header breaks off", frames;
+    if (at + length > body.size()) return ADD_FAILURE() << "stream ends in a header", frames;
     StreamedFrame frame{nlohmann::json::parse(body.substr(at, length)), {}};
     at += length;
     const std::size_t bytes = frame.header.at("bytes");
-    if (at + bytes > body.size()) return ADD_FAILURE() << "a picture breaks off", frames;
+    if (at + bytes > body.size()) return ADD_FAILURE() << "stream ends in an image", frames;
     frame.png = body.substr(at, bytes);
     at += bytes;
     frames.push_back(std::move(frame));

@@ -10,7 +10,7 @@
 
 namespace orrery {
 
-// Running `orrery serve` on a free port.
+// Process of `orrery serve` on a free port.
 class Daemon {
  public:
   // `log` receives the log of all requests. Without `log`, warnings and errors go to standard error.
@@ -26,19 +26,19 @@ class Daemon {
   httplib::Client health_client() const;
 
   void signal(int number) const;
-  // Waits for the end and returns the exit status, or 128 + the signal that ended the process.
+  // Waits for the process to end. Returns its exit status, or 128 + the signal that ended it.
   int wait();
   bool running() const;
 
   // Returns the value of a series without labels in /metrics, or -1.
   double metric(const std::string& series) const;
-  // Returns the resident memory, bytes.
+  // Returns the resident memory in bytes.
   double resident_bytes() const;
   std::size_t open_files() const;
 
-  // Returns the processor time used so far, seconds.
+  // Returns the used processor time in seconds.
   double cpu_seconds() const;
-  // Waits until the process uses the processor, or until it is idle. Returns false after `limit_s`.
+  // Waits until the process is busy or idle. Returns false after `limit_s` seconds.
   bool wait_until_working(double limit_s = 600) const;
   bool wait_until_idle(double limit_s = 600) const;
 
@@ -48,26 +48,26 @@ class Daemon {
   int output_ = -1;
 };
 
-// Adds an argument that disables the limit on expected rays, so that images may take hours.
+// Adds an argument that disables the limit on estimated rays, so that images may take hours.
 std::vector<std::string> without_ray_limit(std::vector<std::string> arguments = {});
 
 // Returns the path of the program under test.
 std::string program();
 
-// Plain TCP connection to the daemon, for requests that no HTTP library sends.
+// Plain TCP connection to the daemon, for requests that HTTP libraries cannot send.
 class RawClient {
  public:
-  // `receive_buffer` is the size of the kernel's receive buffer in bytes, 0 for its default. `from` is X of
-  // the client's address 127.0.0.X.
+  // `receive_buffer` is the size of the kernel's receive buffer in bytes, or 0 for its default. The client's
+  // address is 127.0.0.`from`.
   explicit RawClient(int port, int receive_buffer = 0, std::uint8_t from = 1);
   ~RawClient();
   RawClient(const RawClient&) = delete;
 
   void send(const std::string& bytes) const;
-  // Receives until the daemon closes, or until nothing arrives for 5 s.
+  // Receives until the daemon closes the connection or sends nothing for 5 s.
   std::string receive_all() const;
   std::string receive_some() const;
-  // Receives to the end. Returns true if the connection was reset.
+  // Receives until the connection ends. Returns true if it was reset.
   bool is_reset() const;
   void shutdown_send() const;
   void close();
@@ -89,8 +89,8 @@ class HttpTest : public ::testing::Test {
   static Daemon& daemon() { return *daemon_; }
   httplib::Client client_ = daemon_->client();
 
-  // Sends a GET with `known` as If-None-Match. Closes the connection afterwards, since httplib would wait for
-  // the missing body of a 304.
+  // Sends a GET with `known` as If-None-Match. Closes the connection afterwards, because httplib would wait
+  // for a body of the 304.
   httplib::Result get_known(const std::string& path, const std::string& known) {
     return daemon_->client().Get(path, {{"If-None-Match", known}, {"Connection", "close"}});
   }
@@ -102,16 +102,16 @@ class HttpTest : public ::testing::Test {
   static Daemon* daemon_;
 };
 
-// Returns a ball on a mirror, which renders in milliseconds. `more` replaces or adds members.
+// Returns a scene of a ball on a mirror, which renders in milliseconds. `more` adds or replaces members.
 nlohmann::json small_scene(const nlohmann::json& more = nlohmann::json::object());
 
 // Returns the small scene with a ball that moves to the side from 0 to 2 s.
 nlohmann::json moving_scene();
 
-// Returns the path of the job in a response body.
+// Returns the path of the job that the response body describes.
 std::string job_path(const nlohmann::json& job);
 
-// Expects problem details that agree with the status, and returns them.
+// Expects `status` and matching problem details, and returns the details.
 nlohmann::json expect_problem(const httplib::Result& result, int status);
 
 struct StreamedFrame {

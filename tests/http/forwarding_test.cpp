@@ -4,13 +4,13 @@
 
 #include "core/base/error.h"
 
-// Tests the client address, host and path prefix behind proxies.
+// Tests how client address, host and path prefix are determined behind proxies.
 namespace orrery {
 namespace {
 
 IpAddress address(std::string_view text) { return *IpAddress::parse(text); }
 
-// Returns the request after Forwarding has applied `headers`, if the last proxy has the address `peer`.
+// Returns the request after Forwarding has applied `headers` from a proxy with the address `peer`.
 Request applied(const Fields& headers, const char* peer = "10.0.0.1", const std::string& prefix = "",
                 const std::vector<std::string>& segments = {}) {
   static const std::vector<std::string> kProxies{"10.0.0.0/8", "192.0.2.7", "fd00::/8"};
@@ -119,7 +119,7 @@ TEST(Forwarding, StopsAtInvalidAddress) {
   }
 }
 
-// If a proxy sets only one of the two headers, the other is the client's own.
+// If a proxy sets only one of the two headers, the client may have forged the other.
 TEST(Forwarding, IgnoresConflictingHeaders) {
   EXPECT_EQ(client_of({{"Forwarded", "for=203.0.113.9"}, {"X-Forwarded-For", "198.51.100.1"}}), "10.0.0.1");
   EXPECT_EQ(client_of({{"Forwarded", "for=198.51.100.1"}, {"X-Forwarded-For", "198.51.100.1"}}),
@@ -138,7 +138,7 @@ TEST(Forwarding, ReturnsHostRequestedByClient) {
   EXPECT_EQ(host({{"Host", "inner"}, {"X-Forwarded-Host", "render.example"}}, "203.0.113.1"), "");
 }
 
-TEST(Forwarding, StripsPrefixIfPresent) {
+TEST(Forwarding, StripsPrefixFromPath) {
   const Request below = applied({}, "203.0.113.1", "/a/b", {"a", "b", "v1", "limits"});
   EXPECT_EQ(below.path, "/v1/limits");
   EXPECT_EQ(below.segments, (std::vector<std::string>{"v1", "limits"}));

@@ -54,7 +54,7 @@ TEST_F(FramePng, IncludesTimeInETagOfMovingScene) {
   EXPECT_EQ(tag(moving_scene(), "?time=2"), tag(moving_scene(), "?time=3"));
 }
 
-TEST_F(FramePng, ReturnsNotModifiedForKnownPicture) {
+TEST_F(FramePng, ReturnsNotModifiedForKnownImage) {
   const auto first = client_.Get(path());
   const std::string etag = first->get_header_value("ETag");
   for (const std::string& known : {etag, "\"x\", " + etag, std::string("*")}) {

@@ -13,11 +13,11 @@
 #include "core/base/task_scope.h"
 #include "tests/support/eventually.h"
 
-// Tests the limit on concurrent handlers, and the order of waiting ones.
+// Tests the limit on concurrent handlers and the order in which waiting ones get a slot.
 namespace orrery {
 namespace {
 
-// Handlers that wait for a slot, each on its own thread, and the order in which they got one.
+// Handlers that wait for a slot, each on its own thread. Records the order in which they get one.
 class Queue {
  public:
   explicit Queue(HandlerSlots& slots) : slots_(slots) {}
@@ -26,7 +26,7 @@ class Queue {
     threads_.clear();
   }
 
-  // Returns once the handler waits.
+  // Starts a handler and returns once it waits.
   void add(const std::string& client) {
     const std::size_t before = slots_.waiting();
     std::stop_source& gone = gone_.emplace_back();
@@ -110,7 +110,7 @@ TEST(HandlerSlots, ReleasesSlotDuringWait) {
     EXPECT_EQ(first.state.was_evicted(), false);
     EXPECT_EQ(queue.order(), "b");
   }
-  queue.add("c");  // waits: the first has its slot again
+  queue.add("c");  // waits, because the first handler has its slot again
 }
 
 TEST(HandlerSlots, YieldsSlotDuringLongWork) {
@@ -132,7 +132,7 @@ TEST(HandlerSlots, ReleasesSlotUntilResumed) {
     HandlerSlots::Wait wait;
     wait.end_without_slot();
   }
-  { const Running second(slots, "b"); }  // would otherwise wait forever
+  { const Running second(slots, "b"); }  // would wait forever if the slot were not free
   HandlerSlots::resume();
   Queue queue(slots);
   queue.add("c");
@@ -163,7 +163,7 @@ TEST(HandlerSlots, ReportsWaitKindForEviction) {
     EXPECT_EQ(first.state.kind(), WaitState::Kind::turn);
     EXPECT_FALSE(first.state.evict(WaitState::Kind::begun));
     EXPECT_TRUE(first.state.evict(WaitState::Kind::turn));
-    EXPECT_FALSE(first.state.evict(WaitState::Kind::turn)) << "once";
+    EXPECT_FALSE(first.state.evict(WaitState::Kind::turn)) << "evicted only once";
   }
   EXPECT_TRUE(first.state.was_evicted());
 }

@@ -36,7 +36,7 @@ struct StopNotification {
   std::stop_callback<std::function<void()>> callback{source.get_token(), [this] { promise.set_value(); }};
 };
 
-// Work for one watched client.
+// Work for one connection that the monitor watches.
 struct WatchedConnection {
   explicit WatchedConnection(bool asks) : watching(monitor.watch(pair.ends[0], told.source, asks)) {}
   HangupMonitor monitor;
@@ -74,7 +74,7 @@ TEST(HangupMonitor, ProbesHalfClosedConnections) {
   work.told.future.wait();
 }
 
-// A relay may need several probes before it reports the disconnect.
+// A relay may need several probes before it detects the disconnect.
 TEST(HangupMonitor, RepeatsProbes) {
   WatchedConnection work(kSendsProbes);
   shutdown(work.pair.ends[1], SHUT_WR);
@@ -102,7 +102,7 @@ TEST(HangupMonitor, DetectsHangupBeforeRegistration) {
   told.future.wait();
 }
 
-// A keep-alive connection has many requests, one after another.
+// A keep-alive connection has many requests in sequence. A disconnect stops only the current one.
 TEST(HangupMonitor, StopsOnlyCurrentWork) {
   HangupMonitor monitor;
   Pair pair;

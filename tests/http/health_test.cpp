@@ -14,7 +14,7 @@ std::string metrics(Daemon& daemon) {
   return result && result->status == 200 ? result->body : "";
 }
 
-// Returns the value of a series, or -1.
+// Returns the value of a series in the metrics, or -1 if it is missing.
 double value_of(const std::string& text, const std::string& series) {
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);)
@@ -42,19 +42,19 @@ TEST(Health, ListensOnSeparatePort) {
   EXPECT_EQ(text->get_header_value("Cache-Control"), "no-store");
   for (const char* path : {"/", "/v1/catalog", "/v1/scenes"}) expect_problem(client.Get(path), 404);
   expect_problem(client.Post("/healthz", "x", "text/plain"), 405);
-  expect_problem(daemon.client().Get("/metrics"), 404);  // not public
+  expect_problem(daemon.client().Get("/metrics"), 404);  // only on the health port
 }
 
-TEST(Health, RespondsWhileServiceIsFull) {
-  Daemon daemon(without_ray_limit(
-      {"--threads", "1", "--queue-rays", "1", "--interactive-rays", "1000000000000", "--connections", "3"}));
+TEST(Health, RespondsWhileAllConnectionsAreUsed) {
+  Daemon daemon(without_ray_limit({"--threads", "1", "--max-queued-rays", "1", "--interactive-rays",
+                                   "1000000000000", "--connections", "3"}));
   const auto posted = daemon.client().Post("/v1/scenes", small_scene().dump(), "application/json");
   const std::string path = "/v1/scenes/" + nlohmann::json::parse(posted->body).at("id").get<std::string>() +
                            "/frame.png?width=4096&height=4096&samples=4096&precision=double";
   EXPECT_TRUE(
       metrics_reach(daemon, [](const auto& text) { return value_of(text, "orrery_connections") == 0; }));
   std::vector<std::unique_ptr<RawClient>> clients;
-  for (int i = 0; i < 3; ++i) {  // two render, one waits, and no connection is left
+  for (int i = 0; i < 3; ++i) {  // two requests render, one waits, and all connections are in use
     clients.push_back(std::make_unique<RawClient>(daemon.port()));
     clients.back()->send("GET " + path + "&seed=" + std::to_string(i) + " HTTP/1.1\r\nHost: x\r\n\r\n");
     EXPECT_TRUE(metrics_reach(daemon, [i](const auto& text) {
@@ -62,7 +62,7 @@ TEST(Health, RespondsWhileServiceIsFull) {
     }));
   }
   auto client = daemon.health_client();
-  EXPECT_EQ(client.Get("/readyz")->status, 200);  // one client holds all, and would yield to another
+  EXPECT_EQ(client.Get("/readyz")->status, 200);  // one client has all slots, but would yield one to another
   EXPECT_EQ(client.Get("/healthz")->status, 200);
   RawClient refused(daemon.port());
   EXPECT_NE(refused.receive_all().find(" 503 "), std::string::npos);
@@ -100,16 +100,17 @@ TEST(Health, CountsResponsesInMetrics) {
   for (const char* store : {"scenes", "pictures"})
     EXPECT_GT(value_of(text, "orrery_stored_bytes{store=\"" + std::string(store) + "\"}"), 0);
   EXPECT_EQ(value_of(text, "orrery_jobs"), 0);
-  EXPECT_EQ(value_of(text, "orrery_places_lost_total"), 0);
+  EXPECT_EQ(value_of(text, "orrery_preemptions_total"), 0);
   EXPECT_GT(value_of(text, "orrery_sent_bytes_total"), 3000);
-  EXPECT_EQ(value_of(text, "orrery_limit{limit=\"answers_bytes\"}"), 256 << 20);
+  EXPECT_EQ(value_of(text, "orrery_limit{limit=\"response_buffer_bytes\"}"), 256 << 20);
   EXPECT_GT(value_of(text, "process_resident_memory_bytes"), 1e6);
   EXPECT_GT(value_of(text, "process_open_fds"), 3);
   EXPECT_GE(value_of(text, "process_start_time_seconds"), before);
   EXPECT_LE(value_of(text, "process_start_time_seconds"), after);
   const double used = value_of(text, "process_cpu_seconds_total");
   EXPECT_GT(used, 0);
-  EXPECT_GT(value_of(metrics(daemon), "process_cpu_seconds_total"), used) << "answering took some";
+  EXPECT_GT(value_of(metrics(daemon), "process_cpu_seconds_total"), used)
+      << "the requests used processor time";
 }
 
 TEST(Health, CountsCacheHitsAndMisses) {
@@ -139,7 +140,7 @@ TEST(Health, CountsCacheHitsAndMisses) {
 }
 
 TEST(Health, CountsRejectionsByReason) {
-  Daemon daemon({"--body-bytes", "10000", "--jobs", "1"});
+  Daemon daemon({"--max-request-body-bytes", "10000", "--jobs", "1"});
   auto client = daemon.client();
   client.Post("/v1/scenes", std::string(10'001, ' '), "application/json");
   const auto endless =
@@ -148,8 +149,8 @@ TEST(Health, CountsRejectionsByReason) {
   ASSERT_EQ(job->status, 202) << job->body;
   expect_problem(client.Post("/v1/jobs", endless.dump(), "application/json"), 503);
   EXPECT_TRUE(metrics_reach(daemon, [](const auto& text) {
-    return value_of(text, "orrery_refusals_total{reason=\"body_bytes\"}") == 1 &&
-           value_of(text, "orrery_refusals_total{reason=\"jobs\"}") == 1;
+    return value_of(text, "orrery_rejected_requests_total{reason=\"max_request_body_bytes\"}") == 1 &&
+           value_of(text, "orrery_rejected_requests_total{reason=\"jobs\"}") == 1;
   })) << metrics(daemon);
 }
 
@@ -163,7 +164,7 @@ TEST(Health, CountsEndedJobsByOutcome) {
     return job_path(nlohmann::json::parse(job->body));
   };
   start(32, 1);
-  start(1000, 1);  // its image is too large
+  start(1000, 1);  // its result exceeds job_bytes
   const std::string endless = start(4096, 4096);
   EXPECT_EQ(client.Delete(endless)->status, 204);
   for (const char* outcome : {"done", "failed", "cancelled"})
@@ -189,7 +190,7 @@ TEST(Health, GroupsUnknownRequestsInOneSeries) {
     raw.receive_all();
   };
   ask("BREW", "/coffee");
-  const auto is_counted = [&](const std::string& route) {  // soon after the response
+  const auto is_counted = [&](const std::string& route) {  // counted shortly after the response
     const std::string series = "orrery_request_seconds_count{route=\"" + route + "\"}";
     return metrics_reach(daemon, [&](const auto& text) { return value_of(text, series) > 0; });
   };

@@ -1,7 +1,7 @@
 #include "server/app/render_options.h"
 #include "tests/http/daemon.h"
 
-// Tests the service's self-description, and its embedded files.
+// Tests the service's description of itself, and its embedded files.
 namespace orrery {
 namespace {
 
@@ -59,7 +59,7 @@ TEST_F(Info, ServesThumbnailForEverySampleScene) {
 
 TEST_F(Info, PublishesLimits) {
   const auto limits = get_json("/v1/limits");
-  EXPECT_EQ(limits.at("body_bytes"), 8 << 20);
+  EXPECT_EQ(limits.at("max_request_body_bytes"), 8 << 20);
   EXPECT_EQ(limits.at("image_side"), 4096);
   EXPECT_EQ(limits.at("image_pixels"), 16777216);
   EXPECT_EQ(limits.at("samples"), 4096);
@@ -90,7 +90,7 @@ TEST_F(Info, ServesOpenApiDescription) {
   EXPECT_EQ(get_known("/openapi.json", description->get_header_value("ETag"))->status, 304);
 }
 
-// Returns true if the schema bounds its values by a range, an enumeration, items or boolean type.
+// Returns true if the schema limits its values by a range, an enumeration, items or the type boolean.
 bool bounds_its_values(const nlohmann::json& schema) {
   const bool number = schema.contains("minimum") || schema.contains("exclusiveMinimum");
   const bool both = number && (schema.contains("maximum") || schema.contains("exclusiveMaximum"));

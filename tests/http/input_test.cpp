@@ -1,6 +1,6 @@
 #include "tests/http/daemon.h"
 
-// Tests that invalid scenes are reported, and that the daemon keeps serving.
+// Tests that invalid scenes are reported and that the daemon continues to serve.
 namespace orrery {
 namespace {
 
@@ -100,8 +100,8 @@ TEST_F(RequestBodies, AcceptsBodiesAtLimit) {
   EXPECT_EQ(client_.Post("/v1/render", scene, "application/json")->status, 200);
 }
 
-// Deeply nested names of control characters give the longest possible errors. JSON escapes each character
-// with six bytes.
+// Deeply nested names of control characters cause the longest possible errors, because JSON escapes each
+// character with six bytes.
 TEST_F(RequestBodies, LimitsErrorsTo64KiB) {
   const std::string name(1000, '\x01'), written = nlohmann::json(name).dump();
   std::string deep = "1";

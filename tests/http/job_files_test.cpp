@@ -9,7 +9,7 @@
 #include "tests/http/daemon.h"
 #include "tests/support/eventually.h"
 
-// Tests responses with files of jobs.
+// Tests responses that contain files of jobs.
 namespace orrery {
 namespace {
 
@@ -45,14 +45,13 @@ TEST_F(JobFiles, SharesBytesBetweenReaders) {
   for (int reader = 0; reader < 100; ++reader) {
     const Response response = answer("GET", job + "/frames/0.png");
     EXPECT_EQ(response.status, 200);
-    EXPECT_GT(response.body.size(), 70'000U) << "smaller ones take nothing of the budget";
+    EXPECT_GT(response.body.size(), 70'000U) << "smaller responses are exempt from the quota";
     places.insert(response.body.data());
     shares.push_back(budget.take(response.body, "reader " + std::to_string(reader)));
   }
   EXPECT_EQ(places.size(), 1U);
 }
 
-// A response keeps its bytes after the job is deleted.
 TEST_F(JobFiles, OutlivesDeletedJob) {
   const nlohmann::json order = {{"scene", small_scene()}};
   const std::string job = job_path(json_of(answer("POST", "/v1/jobs", order.dump())));

@@ -33,10 +33,10 @@ std::vector<Event> parse_events(const std::string& text) {
   return events;
 }
 
-// Client that receives the events of a job from now on.
+// Client that receives the events of a job.
 class Watcher {
  public:
-  // Returns once the first bytes have arrived.
+  // Connects, and returns once the first bytes have arrived.
   Watcher(const Daemon& daemon, const json& job)
       : thread_([this, &daemon, path = job_path(job) + "/events"] {
           daemon.client().Get(path, [this](const char* bytes, std::size_t count) {
@@ -56,7 +56,7 @@ class Watcher {
  private:
   std::string text_;
   std::atomic<bool> begun_{false};
-  std::thread thread_;  // last: it uses the others
+  std::thread thread_;  // last member, since it uses the others
 };
 
 class JobTest : public HttpTest {
@@ -84,7 +84,7 @@ json endless() {
           {"render", {{"samples", 4096}, {"precision", "double"}}}};
 }
 
-// Streams may use six of the eight connections, and one client half of these.
+// Streams may use six of the eight connections, and one client may use three of these.
 TEST(Streams, LimitsStreamsPerClient) {
   Daemon daemon({"--connections", "8"});
   httplib::Client client = daemon.client();
@@ -102,9 +102,10 @@ TEST(Streams, LimitsStreamsPerClient) {
   const int retry_s = std::stoi(refused->get_header_value("Retry-After"));
   EXPECT_TRUE(retry_s == 5 || retry_s == 6) << retry_s;  // with jitter
   EXPECT_EQ(json::parse(refused->body).at("detail"),
-            "3 streams of this client are open (limit 3 per client, half of connections)");
+            "3 streams of this client are open (limit 3 per client, connections)");
   third.close();
-  EXPECT_TRUE(test::eventually([&] { return watch(RawClient(daemon.port())) == "200"; }));  // slot freed
+  // A stream has ended.
+  EXPECT_TRUE(test::eventually([&] { return watch(RawClient(daemon.port())) == "200"; }));
 }
 
 TEST_F(JobTest, RendersOrbitAndReportsEveryFrame) {
@@ -173,7 +174,7 @@ TEST_F(JobTest, ResumesAfterLastEventId) {
   const json job = start({{"scene", small_scene()}, {"orbit", kOrbit}});
   const auto all = events(job);
   const auto rest = events(job, {{"Last-Event-ID", "2"}});
-  ASSERT_EQ(rest.size(), 3U);  // two frames and the end
+  ASSERT_EQ(rest.size(), 3U);  // two frames and the event `done`
   EXPECT_EQ(rest[0].data.at("frame"), 2);
   EXPECT_EQ(rest[2].name, "done");
   EXPECT_EQ(events(job, {{"Last-Event-ID", "4"}}).size(), 1U);
@@ -265,7 +266,7 @@ TEST(JobLimits, EnforcesAndReportsLimits) {
   const json first = post_job(daemon, endless());
   post_job(daemon, endless());
   const json problem = post_job(daemon, endless(), 429);
-  EXPECT_NE(problem.at("detail").get<std::string>().find("half of jobs)"), std::string::npos);
+  EXPECT_NE(problem.at("detail").get<std::string>().find("per client, jobs)"), std::string::npos);
   daemon.client().Delete(job_path(first));
   const auto told =
       events_of(daemon, post_job(daemon, {{"scene", small_scene()}, {"orbit", {{"frames", 100}}}}));
@@ -282,7 +283,7 @@ TEST(JobLimits, LimitsJobsOfAllClients) {
 }
 
 TEST(JobLimits, LimitsNumberOfEndedJobs) {
-  Daemon daemon({"--jobs-kept", "3"});
+  Daemon daemon({"--max-finished-jobs", "3"});
   std::vector<std::string> paths;
   for (int i = 0; i < 20; ++i) {
     const json job = post_job(daemon, {{"scene", small_scene()}, {"camera", {{"azimuth_degrees", i}}}});
@@ -296,7 +297,7 @@ TEST(JobLimits, LimitsNumberOfEndedJobs) {
 }
 
 TEST(JobLimits, KeepsJobsOfOtherClientsDuringFlood) {
-  Daemon daemon({"--jobs-kept", "5"});
+  Daemon daemon({"--max-finished-jobs", "5"});
   const json job = post_job(daemon, {{"scene", small_scene()}});
   EXPECT_EQ(events_of(daemon, job).back().name, "done");
   httplib::Client flood = daemon.client_at(2);

@@ -28,7 +28,7 @@ TEST(Disconnect, CancelsRender) {
   raw.close();
   EXPECT_TRUE(daemon.wait_until_idle());
   EXPECT_EQ(daemon.client().Get(scene + "/frame.png")->status, 200);
-  EXPECT_NE(daemon.health_client().Get("/metrics")->body.find("orrery_given_up_total{stage=\"render\"} 1\n"),
+  EXPECT_NE(daemon.health_client().Get("/metrics")->body.find("orrery_cancelled_total{stage=\"render\"} 1\n"),
             std::string::npos);
 }
 
@@ -82,8 +82,7 @@ TEST(Disconnect, CancelsRefinement) {
   Daemon daemon(without_ray_limit());
   RawClient raw(daemon.port());
   raw.send(get(post(daemon, small_scene()) + "/refinement?width=400&height=300&samples=4096"));
-  // The next pass has 128 samples a pixel, 8 under a sanitizer. The pass is running when the client
-  // disconnects.
+  // The client disconnects during the pass with 128 samples per pixel, or 8 with a sanitizer.
 #ifdef ORRERY_SANITIZED
   constexpr int kPasses = 4;
 #else
@@ -95,7 +94,7 @@ TEST(Disconnect, CancelsRefinement) {
   }));
   raw.close();
   EXPECT_TRUE(daemon.wait_until_idle());
-  EXPECT_NE(daemon.health_client().Get("/metrics")->body.find("orrery_given_up_total{stage=\"render\"} 1\n"),
+  EXPECT_NE(daemon.health_client().Get("/metrics")->body.find("orrery_cancelled_total{stage=\"render\"} 1\n"),
             std::string::npos);
 }
 
@@ -104,13 +103,14 @@ TEST(Backpressure, PausesRefinementWhileClientDoesNotRead) {
   const RawClient raw(daemon.port(), 4096);
   raw.send(get(post(daemon, small_scene()) + "/refinement?width=1024&height=1024&samples=4096"));
   EXPECT_TRUE(test::eventually([&] { return !raw.receive_some().empty(); }));
-  EXPECT_TRUE(daemon.wait_until_idle());  // rendering on would take 10 s or more
+  EXPECT_TRUE(daemon.wait_until_idle());  // the remaining passes would take 10 s or more
   EXPECT_EQ(daemon.metric("orrery_renders_running"), 0);
 }
 
-// Slow or incomplete request bodies share one byte limit.
+// Slow and incomplete request bodies share one byte limit.
 TEST(SlowUploads, SharesOneByteLimit) {
-  Daemon daemon({"--body-bytes", "1000000", "--asset-bytes", "1000000", "--bodies-bytes", "1500000"});
+  Daemon daemon({"--max-request-body-bytes", "1000000", "--asset-bytes", "1000000", "--request-buffer-bytes",
+                 "1500000"});
   const auto head = [](int bytes) {
     return "POST /v1/scenes HTTP/1.1\r\nHost: x\r\nContent-Length: " + std::to_string(bytes) + "\r\n\r\n{";
   };
@@ -120,31 +120,33 @@ TEST(SlowUploads, SharesOneByteLimit) {
     return client;
   };
   auto slow = dawdle();
-  const RawClient tells(daemon.port());  // announces a body, but sends nothing, which uses nothing
+  // Announces a body, but sends none of it, and uses no bytes of the limit.
+  const RawClient tells(daemon.port());
   tells.send(head(1'000'000));
   const auto post_until = [&](int status) {
     for (int i = 0;; ++i) {
       auto result = daemon.client().Post("/v1/scenes", std::string(600'000, ' '), "application/json");
       if (i == 500 || (result && result->status == status)) return result;
       if (!slow) continue;
-      slow.reset();  // the last to be read is refused, perhaps the slow one
+      slow.reset();  // the last body to be read is rejected, which may be the slow one
       slow = dawdle();
     }
   };
   const auto refused = post_until(429);
   const auto problem = expect_problem(refused, 429);
-  EXPECT_NE(problem.at("detail").get<std::string>().find("limit 750,000, bodies_bytes"), std::string::npos);
+  EXPECT_NE(problem.at("detail").get<std::string>().find("limit 750,000, request_buffer_bytes"),
+            std::string::npos);
   EXPECT_EQ(refused->get_header_value("Retry-After"), "2");
   EXPECT_EQ(daemon.client().Post("/v1/scenes", small_scene().dump(), "application/json")->status, 201);
   slow.reset();
-  expect_problem(post_until(400), 400);  // read now, but not JSON
+  expect_problem(post_until(400), 400);  // accepted, but not JSON
 }
 
 TEST(Disconnect, RemovesQueuedRender) {
   Daemon daemon(without_ray_limit({"--threads", "1", "--interactive-rays", "1000000000000"}));
   const std::string path = post(daemon, small_scene()) + "/frame.png";
   std::vector<std::unique_ptr<RawClient>> clients;
-  for (int i = 0; i < 3; ++i) {  // two render, one waits
+  for (int i = 0; i < 3; ++i) {  // two requests render, one waits
     clients.push_back(std::make_unique<RawClient>(daemon.port()));
     clients.back()->send(get(path + kEndless + "&seed=" + std::to_string(i)));
     ASSERT_TRUE(daemon.wait_until_working());
@@ -163,7 +165,7 @@ TEST(Deadline, CancelsOverlongRender) {
   EXPECT_TRUE(daemon.wait_until_idle());
 }
 
-// Returns the path of an image that takes about two seconds on this machine.
+// Returns the path of an image that takes about two seconds to render on this machine.
 std::string slow_picture(Daemon& daemon, const std::string& scene) {
   const double before = daemon.cpu_seconds();
   daemon.client().Get(scene + "/frame.png?width=1000&height=1000&samples=4");
@@ -184,7 +186,7 @@ TEST(Startup, RaisesDescriptorLimitOrFails) {
   const std::string check = "'" + program() + "' serve --check-config --connections ";
   const auto [text, status] = run("ulimit -n 500; " + check + "165");
   EXPECT_EQ(status, 2);
-  EXPECT_NE(text.find("165 connections may take 501 open files (limit 500, ulimit -n)"), std::string::npos)
+  EXPECT_NE(text.find("165 connections may need 501 open files (limit 500, ulimit -n)"), std::string::npos)
       << text;
   EXPECT_EQ(run("ulimit -n 500; " + check + "164"), std::pair(std::string(), 0));
   EXPECT_EQ(run("ulimit -Sn 64; " + check + "256"), std::pair(std::string(), 0));
@@ -196,7 +198,7 @@ TEST(Startup, RejectsTooSmallAddressSpace) {
   const auto [addresses, refused] =
       run(stacks + "3000000; " + check + "8 --threads 2 --memory-bytes 3000000000");
   EXPECT_EQ(refused, 2);
-  EXPECT_NE(addresses.find("3,000,000,000 bytes, 8 connections and 2 threads may take 3,603,979,776 bytes of "
+  EXPECT_NE(addresses.find("3,000,000,000 bytes, 8 connections and 2 threads may need 3,603,979,776 bytes of "
                            "address space (limit 3,072,000,000, ulimit -v)"),
             std::string::npos)
       << addresses;
@@ -204,8 +206,8 @@ TEST(Startup, RejectsTooSmallAddressSpace) {
             std::pair(std::string(), 0));
 }
 
-// The drain delay gives a load balancer time to notice.
-TEST(Shutdown, ServesWhileNotReadyDuringDrainDelay) {
+// During the drain delay, the load balancer can notice that the service is not ready.
+TEST(Shutdown, ServesRequestsDuringDrainDelay) {
   Daemon daemon({"--drain-delay-seconds", "3600"});
   const std::string scene = post(daemon, small_scene());
   EXPECT_EQ(daemon.health_client().Get("/readyz")->status, 200);

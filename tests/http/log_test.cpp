@@ -29,7 +29,7 @@ struct LogPipe {
   int ends[2];
 };
 
-constexpr int kMany = 1000;  // lines of 200 bytes or more, three times a pipe's capacity
+constexpr int kMany = 1000;  // lines of 200 bytes or more, three times the capacity of a pipe
 
 void expect_answers(const Daemon& daemon, int count) {
   httplib::Client client = daemon.client();
@@ -46,7 +46,7 @@ TEST(LogPipe, DoesNotBlockRequestsOrShutdownWhenFull) {
   Daemon daemon({}, pipe.ends[1]);
   expect_answers(daemon, kMany);
   EXPECT_TRUE(pipe.is_full());
-  while (daemon.metric("orrery_log_lines_dropped_total") == 0)  // the first one waits for a reader
+  while (daemon.metric("orrery_log_lines_dropped_total") == 0)  // the first line waits for a reader
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   daemon.signal(SIGTERM);
   EXPECT_EQ(daemon.wait(), 0);

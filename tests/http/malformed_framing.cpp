@@ -4,7 +4,7 @@
 namespace orrery {
 namespace {
 
-// Returns a POST with the framing headers `headers`, and bytes after the head.
+// Returns a POST with the framing headers `headers`, followed by the bytes `after`.
 std::string post(const std::string& headers, const std::string& after) {
   return "POST /v1/render HTTP/1.1\r\nHost: x\r\n" + headers + "\r\n" + after;
 }
@@ -33,16 +33,16 @@ std::vector<RawCase> framing_cases() {
   const std::string last = "GET /healthz HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n";
   return {
       // The total length of a chunked body is unknown until its last chunk.
-      {"ChunkedThenARequest", post(chunked, in_chunks(whole)) + last, {200, 200}},
+      {"ChunkedThenRequest", post(chunked, in_chunks(whole)) + last, {200, 200}},
       {"ChunkedInCapitals", post("TRANSFER-ENCODING: CHUNKED\r\n", in_chunks(whole)) + last, {200, 200}},
       {"ChunkExtensionAndTrailer",
        post(chunked, "2;a=\"b\"\r\n{}\r\n000\r\nHost: y\r\nA:\r\n\r\n") + last,
        {422, 200}},
-      {"ChunkTrailerThatIsARequest", post(chunked, "0\r\n" + std::string(kInner)), {400}},
-      {"ChunkOfNegativeSize", post(chunked, "-2\r\n{}\r\n0\r\n\r\n"), {400}},  // CVE-2026-45352
-      {"ChunkOf64Bits", post(chunked, "ffffffffffffffff\r\n{}"), {413}},       // CVE-2025-53629
+      {"ChunkTrailerResemblingRequest", post(chunked, "0\r\n" + std::string(kInner)), {400}},
+      {"ChunkWithNegativeSize", post(chunked, "-2\r\n{}\r\n0\r\n\r\n"), {400}},  // CVE-2026-45352
+      {"ChunkOf64Bits", post(chunked, "ffffffffffffffff\r\n{}"), {413}},         // CVE-2025-53629
       {"ChunkOver64Bits", post(chunked, "10000000000000002\r\n{}"), {400}},
-      {"ChunkOverTheLimit", post(chunked, "2\r\n{}\r\n7fffff\r\n"), {413}},
+      {"ChunkOverLimit", post(chunked, "2\r\n{}\r\n7fffff\r\n"), {413}},
       {"ChunkSizeWithPrefix", post(chunked, "0x2\r\n{}\r\n0\r\n\r\n"), {400}},
       {"ChunkSizeWithPlus", post(chunked, "+2\r\n{}\r\n0\r\n\r\n"), {400}},
       {"ChunkSizeWithBlank", post(chunked, "2 \r\n{}\r\n0\r\n\r\n"), {400}},
@@ -54,7 +54,7 @@ std::vector<RawCase> framing_cases() {
       {"ChunkTrailerWithCarriageReturn", post(chunked, "0\r\nA: b\r\r\n\r\n"), {400}},
       {"ChunkExtensionWithLineFeed", post(chunked, "2;\n{}\r\n0\r\n\r\n"), {400}},  // CVE-2025-46728
       {"ChunkExtensionTooLong", post(chunked, "2;" + std::string(5000, 'a') + "\r\n{}\r\n0\r\n\r\n"), {400}},
-      {"ChunkLongerThanItsSize", post(chunked, "1\r\n{}\r\n0\r\n\r\n"), {400}},
+      {"ChunkLongerThanSize", post(chunked, "1\r\n{}\r\n0\r\n\r\n"), {400}},
       {"ChunkFollowedByBytes", post(chunked, "2\r\n{}xx0\r\n\r\n"), {400}},
       {"ChunkEndsWithLineFeed", post(chunked, "2\r\n{}\n0\r\n\r\n"), {400}},
       {"ChunkTrailerWithoutColon", post(chunked, "0\r\nHost\r\n\r\n"), {400}},
@@ -73,8 +73,8 @@ std::vector<RawCase> framing_cases() {
             "chunked\r\n",
             "0\r\n\r\n"),
        {400}},
-      {"CodingInOldVersion", "POST /v1/render HTTP/1.0\r\n" + chunked + "\r\n0\r\n\r\n", {400}},
-      {"ChunkedGetWithARequestInIt",
+      {"CodingInHttp10", "POST /v1/render HTTP/1.0\r\n" + chunked + "\r\n0\r\n\r\n", {400}},
+      {"ChunkedGetContainingRequest",
        "GET /healthz HTTP/1.1\r\nHost: x\r\n" + chunked + "\r\n0\r\n\r\n" + kInner,
        {200}},
 
@@ -92,27 +92,27 @@ std::vector<RawCase> framing_cases() {
       {"LengthOver64Bits", post("Content-Length: 18446744073709551616\r\n", ""), {400}},
       {"LengthOf64Bits", post("Content-Length: 18446744073709551615\r\n", ""), {413}},
       {"LengthOf63Bits", post("Content-Length: 9223372036854775808\r\n", ""), {413}},
-      {"LengthOverTheLimit", post("Content-Length: 8388609\r\n", "{"), {413}},
+      {"LengthOverLimit", post("Content-Length: 8388609\r\n", "{"), {413}},
       {"LengthWithZeros", post("Content-Length: 00000000000000000002\r\nConnection: close\r\n", "{}"), {422}},
       {"LengthWithBlankBeforeColon", post("Content-Length : 2\r\n", "{}"), {400}},
-      {"LengthInTheFold", post("A: b\r\n Content-Length: 2\r\n", "{}"), {400}},
+      {"LengthInFoldedLine", post("A: b\r\n Content-Length: 2\r\n", "{}"), {400}},
       {"LengthMissing", post("", "{}"), {411}},
-      {"LengthMissingInOldVersion", "POST /v1/render HTTP/1.0\r\n\r\n{}", {411}},
+      {"LengthMissingInHttp10", "POST /v1/render HTTP/1.0\r\n\r\n{}", {411}},
 
-      // Bytes after an answered request.
+      // Bytes after a complete request.
       {"Pipelined", kInner + good + last, {200, 200, 200}},
-      {"BodyThatNobodyReadsIsNoRequest",
+      {"UnreadBodyIsNotParsedAsRequest",
        "POST /nosuch HTTP/1.1\r\nHost: x\r\nContent-Length: " + std::to_string(std::string(kInner).size()) +
            "\r\n\r\n" + kInner + kInner,
        {404}},
-      {"BodyOfAGetIsNoRequest",
+      {"BodyOfGetIsNotParsedAsRequest",
        "GET /healthz HTTP/1.1\r\nHost: x\r\nContent-Length: " + std::to_string(std::string(kInner).size()) +
            "\r\n\r\n" + kInner + kInner,
        {200}},
-      {"BodyTooLongIsNoRequest", post("Content-Length: 8388609\r\n", kInner), {413}},
-      {"MoreThanTheBodyIsTheNextRequest", good + "X" + last, {200, 501}},
-      {"RequestAfterARefusalIsNotHeard", "GET / HTTP/1.1\r\n\r\n" + last, {400}},
-      {"RequestAfterCloseIsNotHeard", last + kInner, {200}},
+      {"OversizedBodyIsNotParsedAsRequest", post("Content-Length: 8388609\r\n", kInner), {413}},
+      {"BytesAfterBodyBeginNextRequest", good + "X" + last, {200, 501}},
+      {"RequestAfterErrorIsIgnored", "GET / HTTP/1.1\r\n\r\n" + last, {400}},
+      {"RequestAfterCloseIsIgnored", last + kInner, {200}},
   };
 }
 

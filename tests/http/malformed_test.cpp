@@ -5,7 +5,7 @@
 #include "tests/http/daemon.h"
 #include "tests/support/sanitized.h"
 
-// Tests malformed input: each case gets the right response, and the daemon keeps serving.
+// Tests malformed requests. Each case gets the expected responses, and the daemon continues to serve.
 namespace orrery {
 
 void PrintTo(const RawCase& raw, std::ostream* out) { *out << raw.name; }
@@ -37,13 +37,13 @@ std::string header(const Answer& answer, const std::string& name) {
   return answer.head.substr(begin, answer.head.find("\r\n", begin) - begin);
 }
 
-// Splits the responses by their Content-Length. Fails the test if that is impossible.
+// Splits the bytes into responses by Content-Length. Fails the test if they are malformed.
 std::vector<Answer> answers_in(std::string bytes) {
   std::vector<Answer> answers;
   while (!bytes.empty()) {
     const std::size_t end = bytes.find("\r\n\r\n");
     if (bytes.rfind("HTTP/1.1 ", 0) != 0 || end == std::string::npos) {
-      ADD_FAILURE() << "no answer: " << bytes;
+      ADD_FAILURE() << "no complete response in " << bytes;
       break;
     }
     Answer answer{std::stoi(bytes.substr(9, 3)), bytes.substr(0, end + 2), {}};
@@ -94,7 +94,7 @@ TEST(ResourceUse, StaysBoundedUnderMalformedRequests) {
   const auto send_all = [&] {
     for (const RawCase& raw : cases) send(daemon, raw.bytes);
   };
-  for (int i = 0; i < 2; ++i) send_all();  // warms up persistent buffers
+  for (int i = 0; i < 2; ++i) send_all();  // fills buffers that persist
   const double memory = daemon.resident_bytes();
   const std::size_t files = daemon.open_files();
   for (int i = 0; i < (test::kSanitized ? 5 : 50); ++i) send_all();

@@ -1,6 +1,6 @@
-// Checks every exchange of the http tests against the service's OpenAPI description. The status and the media
-// type are listed, the body is valid, and listed headers are present. An accepted request body is allowed by
-// the description, and every operation was requested.
+// Checks every exchange of the http tests against the service's OpenAPI description. The status, the media
+// type, the body and the headers of responses must match. Accepted request bodies must be valid, and every
+// operation must have been requested.
 import { existsSync, readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 
@@ -14,7 +14,7 @@ try {
   process.exit(77);
 }
 if (!recorded || !existsSync(recorded)) {
-  console.log("skipped: the http tests have left no exchanges");
+  console.log("skipped: no exchanges of the http tests found");
   process.exit(77);
 }
 
@@ -27,7 +27,7 @@ const described = exchanges.find(
   ({ method, path, status }) => method === "GET" && path === "/openapi.json" && status === 200,
 );
 if (!described) {
-  console.log("not ok: no test has asked for /openapi.json");
+  console.log("not ok: no test requests /openapi.json");
   process.exit(1);
 }
 const description = JSON.parse(described.body);
@@ -71,8 +71,8 @@ function check_body(response, exchange) {
   const type = (exchange.headers["Content-Type"] ?? "").split(";")[0];
   const types = Object.keys(response.value.content ?? {});
   if (exchange.method === "HEAD") return null;
-  if (types.length === 0) return type ? `a body of ${type}, where none is described` : null;
-  if (!types.includes(type)) return `a body of ${type || "no type"}, where ${types} are described`;
+  if (types.length === 0) return type ? `must have no body (got ${type})` : null;
+  if (!types.includes(type)) return `body must have type ${types} (got ${type || "none"})`;
   const schema = `${response.pointer}${pointer_to("content", type, "schema")}`;
   return response.value.content[type].schema ? problem_of(schema, exchange.body) : null;
 }
@@ -82,26 +82,26 @@ function check_request(operation, exchange) {
   if (exchange.status >= 300 || !content["application/json"] || !exchange.request) return null;
   const schema = pointer_to("requestBody", "content", "application/json", "schema");
   const problem = problem_of(`${operation.pointer}${schema}`, exchange.request);
-  return problem && `accepted a body that is not described: ${problem}`;
+  return problem && `must reject the request body: ${problem}`;
 }
 
 const is_optional = (header) => resolve(header).value.required === false;
 
 function check(exchange) {
   const place = patterns.find(({ pattern }) => pattern.test(exchange.path.split("?")[0]))?.path;
-  if (!place) return exchange.path.startsWith("/v1/") && exchange.status < 400 ? "the path is not described" : null;
+  if (!place) return exchange.path.startsWith("/v1/") && exchange.status < 400 ? "path is not described" : null;
   const method = exchange.method === "HEAD" ? "get" : exchange.method.toLowerCase();
   const operation = resolve(pointer_to("paths", place, method));
-  if (!operation.value) return [204, 404, 405].includes(exchange.status) ? null : "the method is not described";
+  if (!operation.value) return [204, 404, 405].includes(exchange.status) ? null : "method is not described";
   asked.add(`${method} ${place}`);
   const exact = resolve(`${operation.pointer}${pointer_to("responses", String(exchange.status))}`);
   const response =
     exact.value || exchange.status < 400 ? exact : resolve(`${operation.pointer}${pointer_to("responses", "default")}`);
-  if (!response.value) return "the status is not described";
+  if (!response.value) return "status is not described";
   const missing = Object.keys(response.value.headers ?? {}).filter(
     (name) => !(name in exchange.headers) && !is_optional(`${response.pointer}${pointer_to("headers", name)}`),
   );
-  if (missing.length > 0) return `without ${missing}`;
+  if (missing.length > 0) return `missing header ${missing}`;
   return check_body(response, exchange) ?? check_request(operation, exchange);
 }
 
@@ -113,6 +113,6 @@ for (const exchange of exchanges) {
 }
 for (const [path, item] of Object.entries(description.paths))
   for (const method of Object.keys(item).filter((key) => ["get", "post", "put", "delete"].includes(key)))
-    if (!asked.has(`${method} ${path}`) && ++wrong) console.log(`not ok: ${method} ${path} was never asked for`);
+    if (!asked.has(`${method} ${path}`) && ++wrong) console.log(`not ok: ${method} ${path} was never requested`);
 console.log(`${exchanges.length} exchanges, ${wrong} differ from the description`);
 process.exit(wrong === 0 ? 0 : 1);

@@ -90,7 +90,7 @@ TEST_F(OrbitStream, SendsMultipartToBrowsers) {
   EXPECT_TRUE(rest.empty());
 }
 
-TEST_F(OrbitStream, MatchesPicturesOfSameAngle) {
+TEST_F(OrbitStream, MatchesImagesOfSameAngle) {
   const auto scene = small_scene();
   const auto frames = parse_frames(client_.Get(path("frames=4&fps=0"), kFrames)->body);
   ASSERT_EQ(frames.size(), 4u);
@@ -114,7 +114,7 @@ TEST_F(OrbitStream, ReportsErrorBoundOfFrames) {
   EXPECT_EQ(bound.rfind("rms=" + rounded(told.at("total").at("rms")) + ";kind=estimated", 0), 0u) << bound;
 }
 
-TEST_F(OrbitStream, WarnsAboutUselessPictures) {
+TEST_F(OrbitStream, WarnsAboutUselessImages) {
   EXPECT_FALSE(client_.Get(path("frames=1"), kFrames)->has_header("Orrery-Warning"));
   const std::string inside =
       client_.Get(path("frames=1&distance=0.05"), kFrames)->get_header_value("Orrery-Warning");
@@ -146,7 +146,7 @@ TEST_F(OrbitStream, PacesFramesAtTinyRate) {
     body.append(bytes, size);
     return true;
   };
-  EXPECT_FALSE(client.Get(path("frames=40&fps=1e-300"), kFrames, take));  // the second is never due
+  EXPECT_FALSE(client.Get(path("frames=40&fps=1e-300"), kFrames, take));  // the second frame is never due
   EXPECT_EQ(parse_frames(body).size(), 1u);
 }
 
@@ -196,7 +196,8 @@ TEST(OrbitFailure, AbortsFailedStream) {
     };
     return response;
   };
-  std::promise<std::pair<std::string, bool>> served;  // the note, and true if the client disconnected
+  // Note of the response, and true if the client disconnected.
+  std::promise<std::pair<std::string, bool>> served;
   HttpServer server({.host = "127.0.0.1", .port = 0},
                     {.admit = [&](Request&) -> HttpServer::Admitted {
                        return {{}, answer};
@@ -213,7 +214,7 @@ TEST(OrbitFailure, AbortsFailedStream) {
   served = {};
   const RawClient old(server.port());
   old.send("GET / HTTP/1.0\r\n\r\n");
-  EXPECT_TRUE(old.is_reset());  // a close would end the body
+  EXPECT_TRUE(old.is_reset());  // an orderly close would look like the end of the body
   server.drain();
   thread.join();
 }
@@ -239,7 +240,7 @@ TEST_F(OrbitStream, RendersEqualOrbitsOnce) {
   for (const auto& frame : others) {
     const auto& twin = by_number[frame.header.at("frame")];
     common += !twin.is_null();
-    // Two separate renders of a frame never have equal times to the last digit.
+    // Separate renders of a frame never have exactly equal times.
     if (!twin.is_null() && twin.at("render_ms") == frame.header.at("render_ms") &&
         twin.at("encode_ms") == frame.header.at("encode_ms"))
       ++shared;
@@ -258,7 +259,7 @@ TEST_F(OrbitStream, SendsWholeOrbitToLateViewer) {
   }
 }
 
-// Client that requests more frames than the kernel buffers hold, and reads none before receive().
+// Client that requests more frames than the kernel buffers can store, and reads none before receive().
 class SlowViewer {
  public:
   SlowViewer(int port, const std::string& url) : raw_(port, 8 * 1024) {
@@ -268,7 +269,7 @@ class SlowViewer {
 
   std::vector<StreamedFrame> receive() const {
     const std::string answer = raw_.receive_all();
-    std::string body;  // without chunk framing
+    std::string body;  // without the framing of chunks
     for (std::size_t at = answer.find("\r\n\r\n") + 4; at < answer.size();) {
       const std::size_t length = std::stoul(answer.substr(at), nullptr, 16);
       at = answer.find("\r\n", at) + 2;
@@ -299,19 +300,20 @@ void expect_some_skipped(const std::vector<StreamedFrame>& seen) {
 
 TEST_F(OrbitStream, SkipsFramesOnlyForSlowViewer) {
   const std::string url =
-      path(kLargeFrames + (test::kSanitized ? "&fps=3" : "&fps=4"));  // all within the write timeout
+      // The stream ends within the write timeout.
+      path(kLargeFrames + (test::kSanitized ? "&fps=3" : "&fps=4"));
   const SlowViewer slow(daemon().port(), url);
   const auto fast = parse_frames(client_.Get(url, kFrames)->body);
-  expect_some_skipped(slow.receive());  // only now
+  expect_some_skipped(slow.receive());  // starts to read
   ASSERT_FALSE(fast.empty());
   EXPECT_EQ(fast.back().header.at("skipped"), 0);
 }
 
 TEST_F(OrbitStream, SkipsOverdueFramesForSingleSlowViewer) {
   const SlowViewer slow(daemon().port(), path(kLargeFrames + "&fps=10"));
-  std::this_thread::sleep_for(std::chrono::milliseconds(2500));  // longer than the orbit
-  ASSERT_TRUE(daemon().wait_until_idle());  // rendering may be slow: wait until no more frames are sent
-  std::this_thread::sleep_for(std::chrono::milliseconds(1000));  // 10 frames are due meanwhile
+  std::this_thread::sleep_for(std::chrono::milliseconds(2500));  // longer than the orbit's duration
+  ASSERT_TRUE(daemon().wait_until_idle());  // waits until no more frames are sent, even if rendering is slow
+  std::this_thread::sleep_for(std::chrono::milliseconds(1000));  // 10 frames are due in this time
   expect_some_skipped(slow.receive());
 }
 

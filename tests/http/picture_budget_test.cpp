@@ -1,4 +1,4 @@
-// Budgets of error and of time over HTTP.
+// Tests error budgets and time budgets over HTTP.
 #include <cstdlib>
 
 #include "tests/http/daemon.h"
@@ -20,7 +20,7 @@ bool has(const httplib::Result& result, const char* header, const char* text) {
   return result->get_header_value(header).find(text) != std::string::npos;
 }
 
-TEST_F(PictureBudget, ReturnsCacheablePictureForErrorBudget) {
+TEST_F(PictureBudget, ReturnsCacheableImageForErrorBudget) {
   const auto first = get("error=0.2");
   ASSERT_EQ(first->status, 200) << first->body.substr(0, 400);
   EXPECT_TRUE(has(first, "Orrery-Budget", "met=?1;error=0.2;error-met=?1"));
@@ -32,7 +32,7 @@ TEST_F(PictureBudget, ReturnsCacheablePictureForErrorBudget) {
   EXPECT_TRUE(get("error=0.2&seed=1")->body != first->body);
 }
 
-TEST_F(PictureBudget, ReproducesPictureFromContentLocation) {
+TEST_F(PictureBudget, ReproducesImageFromContentLocation) {
   for (const char* query : {"error=0.2", "seconds=0.2", "seconds=0.05&technique=path", "error=0.5&depth=2",
                             "error=0.3&pan=0.1,0,0&azimuth=20"}) {
     const auto made = get(query);
@@ -47,8 +47,8 @@ TEST_F(PictureBudget, ReproducesPictureFromContentLocation) {
   }
 }
 
-// Another daemon with another number of threads repeats the image.
-TEST_F(PictureBudget, ReproducesPictureOnAnotherDaemon) {
+// Another daemon with a different number of threads reproduces the image.
+TEST_F(PictureBudget, ReproducesImageOnAnotherDaemon) {
   test::covers("certificate-31 certificate-32");
   Daemon other({"--threads", "3"});
   httplib::Client there = other.client();
@@ -70,10 +70,10 @@ TEST_F(PictureBudget, ReproducesPictureOnAnotherDaemon) {
     EXPECT_EQ(here->get_header_value(header), also->get_header_value(header)) << header;
 }
 
-// The request is refused if its time ends before a slot is free. A free slot always admits it.
+// The request is rejected if its time ends before it gets a slot. It is always admitted if a slot is free.
 TEST(TimeBudget, RejectsRequestIfServiceIsBusy) {
   test::covers("certificate-37");
-  Daemon daemon(without_ray_limit({"--renders", "1"}));
+  Daemon daemon(without_ray_limit({"--max-concurrent-renders", "1"}));
   httplib::Client client = daemon.client();
   const auto posted = client.Post("/v1/scenes", small_scene().dump(), "application/json");
   const std::string frame = posted->get_header_value("Location") + "/frame.png";
@@ -84,7 +84,8 @@ TEST(TimeBudget, RejectsRequestIfServiceIsBusy) {
   const auto refused = client.Get(frame + "?seconds=0.000001");
   const auto problem = expect_problem(refused, 503);
   EXPECT_FALSE(refused->get_header_value("Retry-After").empty());
-  EXPECT_NE(problem["detail"].get<std::string>().find("limit 1e-6 s, seconds"), std::string::npos) << problem;
+  EXPECT_NE(problem["detail"].get<std::string>().find("limit 1e-6 s, time_limit_seconds"), std::string::npos)
+      << problem;
 }
 
 TEST_F(PictureBudget, DoesNotCacheTimeBudget) {
@@ -92,7 +93,7 @@ TEST_F(PictureBudget, DoesNotCacheTimeBudget) {
   EXPECT_EQ(first->get_header_value("Cache-Control"), "no-store");
   EXPECT_TRUE(first->get_header_value("ETag").empty());
   EXPECT_TRUE(has(first, "Orrery-Budget", "seconds=0.2;seconds-met=?"));
-  EXPECT_FALSE(get("seconds=0.2")->get_header_value("Orrery-Rays").empty()) << "made again";
+  EXPECT_FALSE(get("seconds=0.2")->get_header_value("Orrery-Rays").empty()) << "rendered again";
 }
 
 TEST_F(PictureBudget, ReportsMissedBudgetOrFails) {
@@ -109,7 +110,7 @@ TEST_F(PictureBudget, ReportsMissedBudgetOrFails) {
   EXPECT_EQ(problem["certificate"]["space"], "display");
 }
 
-// A miss is known only after rendering.
+// Only a render shows that the budget is missed.
 TEST_F(PictureBudget, OmitsETagForHeadIfBudgetMayFail) {
   const auto head = client_.Head(path("error=0.001&on_miss=fail"));
   EXPECT_TRUE(head->get_header_value("ETag").empty());
@@ -133,7 +134,7 @@ TEST_F(PictureBudget, AcceptsBudgetInBody) {
   EXPECT_TRUE(client_.Get(png->get_header_value("Content-Location"))->body == png->body);
   const auto exr = render({{"max_error", 0.2}}, "image/x-exr");
   EXPECT_TRUE(has(exr, "Orrery-Error-Bound", "space=linear"));
-  EXPECT_TRUE(exr->get_header_value("Content-Location").empty()) << "that is a PNG";
+  EXPECT_TRUE(exr->get_header_value("Content-Location").empty()) << "only the URL of the PNG exists";
   EXPECT_TRUE(has(render({{"time_limit_seconds", 0.2}}, "image/jpeg"), "Orrery-Error-Bound", "space=linear"));
   EXPECT_EQ(render({{"max_error", -1}}, "image/png")->status, 422);
   EXPECT_EQ(render({{"second", 1}}, "image/png")->status, 422);

@@ -4,13 +4,14 @@
 #include "tests/http/daemon.h"
 #include "tests/support/eventually.h"
 
-// Tests requests that no HTTP library sends.
+// Tests requests that HTTP libraries cannot send.
 namespace orrery {
 namespace {
 
 class Protocol : public HttpTest {
  protected:
-  // Returns the status of the response to `bytes`, after which the daemon closes, or 0 without a response.
+  // Returns the status of the response to `bytes`, or 0 without a response. The daemon must close the
+  // connection.
   int status_of(const std::string& bytes) {
     const RawClient raw(daemon().port());
     raw.send(bytes);
@@ -22,7 +23,7 @@ class Protocol : public HttpTest {
   }
 };
 
-// Sends the bytes one by one.
+// Sends the bytes individually.
 TEST_F(Protocol, AcceptsChunkedBodies) {
   const std::string scene = small_scene().dump();
   char size[20];
@@ -115,7 +116,7 @@ TEST(Connections, RejectsConnectionsOverLimit) {
   const auto posted = daemon.client().Post("/v1/scenes", small_scene().dump(), "application/json");
   const std::string id = nlohmann::json::parse(posted->body).at("id");
   ASSERT_TRUE(test::eventually([&] { return daemon.metric("orrery_connections") == 0; }));
-  const RawClient first(daemon.port()), second(daemon.port());  // busy, so not evicted
+  const RawClient first(daemon.port()), second(daemon.port());  // busy connections are not evicted
   const std::string path = "/v1/scenes/" + id + "/frame.png?width=4096&height=4096&samples=4096";
   first.send("GET " + path + "&seed=1 HTTP/1.1\r\nHost: x\r\n\r\n");
   second.send("GET " + path + "&seed=2 HTTP/1.1\r\nHost: x\r\n\r\n");
@@ -143,10 +144,10 @@ std::string health_from(const Daemon& daemon, std::uint8_t address) {
 }
 
 TEST(Connections, LimitsOneAddressToThreeQuarters) {
-  Daemon daemon(without_ray_limit({"--connections", "8", "--queue-rays", "1000000000000"}));
+  Daemon daemon(without_ray_limit({"--connections", "8", "--max-queued-rays", "1000000000000"}));
   const auto posted = daemon.client().Post("/v1/scenes", small_scene().dump(), "application/json");
   const std::string id = nlohmann::json::parse(posted->body).at("id");
-  std::vector<std::unique_ptr<RawClient>> at_work;  // busy, so not evicted
+  std::vector<std::unique_ptr<RawClient>> at_work;  // busy connections are not evicted
   for (int i = 0; i < 6; ++i) {
     at_work.push_back(std::make_unique<RawClient>(daemon.port(), 0, kGreedy));
     at_work.back()->send("GET /v1/scenes/" + id + "/frame.png?width=4096&height=4096&samples=4096&seed=" +
@@ -163,9 +164,10 @@ TEST(Connections, LimitsOneAddressToThreeQuarters) {
   EXPECT_EQ(health_from(daemon, kOther).substr(0, 12), "HTTP/1.1 200");
 }
 
-// Two addresses hold all connections, and most of their requests are queued.
+// Two addresses use all connections, and most of their requests are queued.
 TEST(Connections, EvictsQueuedRequestsForNewClients) {
-  Daemon daemon(without_ray_limit({"--connections", "8", "--threads", "1", "--queue-rays", "1000000000000"}));
+  Daemon daemon(
+      without_ray_limit({"--connections", "8", "--threads", "1", "--max-queued-rays", "1000000000000"}));
   const auto posted = daemon.client().Post("/v1/scenes", small_scene().dump(), "application/json");
   const std::string id = nlohmann::json::parse(posted->body).at("id");
   ASSERT_TRUE(test::eventually([&] { return daemon.metric("orrery_connections") == 0; }));
@@ -183,7 +185,8 @@ TEST(Connections, EvictsQueuedRequestsForNewClients) {
   const RawClient newcomer(daemon.port(), 0, 4);
   newcomer.send("GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n");
   EXPECT_EQ(newcomer.receive_some().substr(0, 12), "HTTP/1.1 200");
-  const std::string evicted = holders[4]->receive_all();  // the newest of the address with most
+  // Newest request of the address with the most connections.
+  const std::string evicted = holders[4]->receive_all();
   EXPECT_EQ(evicted.substr(0, 12), "HTTP/1.1 429");
   EXPECT_NE(evicted.find("\r\nRetry-After: "), std::string::npos);
   EXPECT_NE(evicted.find("(connections)"), std::string::npos) << evicted;
@@ -204,13 +207,13 @@ TEST(Connections, ReportsFullIfAllConnectionsAreBusy) {
   EXPECT_EQ(nlohmann::json::parse(ready->body).at("status"), "full");
 }
 
-// Idle connections of a burst from one address are evicted for other clients without delay.
+// The idle connections of one address are evicted for other clients without delay.
 TEST(Connections, EvictsIdleBurstForNewClients) {
   Daemon daemon({"--connections", "8"});
   std::vector<std::unique_ptr<RawClient>> burst, others;
   for (int i = 0; i < 6; ++i) burst.push_back(std::make_unique<RawClient>(daemon.port(), 0, kGreedy));
   for (int i = 0; i < 4; ++i) others.push_back(std::make_unique<RawClient>(daemon.port(), 0, kOther));
-  for (const auto& other : others) {  // they stay open
+  for (const auto& other : others) {  // these connections stay open
     other->send("GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n");
     EXPECT_EQ(other->receive_some().substr(0, 12), "HTTP/1.1 200");
   }
@@ -218,7 +221,7 @@ TEST(Connections, EvictsIdleBurstForNewClients) {
     client->send(kHealth);
     return client->receive_all().starts_with("HTTP/1.1 200");
   });
-  EXPECT_EQ(stayed, 4) << "two made room";
+  EXPECT_EQ(stayed, 4) << "two connections were evicted";
 }
 
 }  // namespace

@@ -45,12 +45,12 @@ TEST(Proxy, PrefixesLinks) {
   EXPECT_EQ(client.Get("/render/v1/jobs/" + id + "/frames/0.png")->status, 200);
 }
 
-// A signature holds with and without the prefix, whichever side strips it.
+// A signature is valid with and without the prefix, whether the proxy or the service strips it.
 TEST(Proxy, AcceptsSharedLinksWithAndWithoutPrefix) {
   const std::string key = ::testing::TempDir() + "proxy_share_key";
   std::ofstream(key) << std::string(32, 'k');
   std::vector<std::string> arguments = kBehindProxy;
-  arguments.insert(arguments.end(), {"--share-key-file", key});
+  arguments.insert(arguments.end(), {"--link-signing-key-file", key});
   const Daemon daemon(arguments);
   auto client = daemon.client();
   for (const char* path : {"/v1/limits", "/render/v1/limits"}) {
@@ -63,7 +63,7 @@ TEST(Proxy, AcceptsSharedLinksWithAndWithoutPrefix) {
   }
 }
 
-// A page on a domain that points at this machine (DNS rebinding) can send any header.
+// A page on a domain that resolves to this machine (DNS rebinding) can send any header.
 TEST(Proxy, ChecksBothHostAndForwardedHost) {
   const Daemon daemon({"--trusted-proxies", "127.0.0.1", "--cors-origins", "https://render.example"});
   auto client = daemon.client();
@@ -89,7 +89,7 @@ TEST(Proxy, SeparatesQuotasOfForwardedClients) {
     return client.Post("/v1/jobs", {{"X-Forwarded-For", who}}, job.dump(), "application/json")->status;
   };
   EXPECT_EQ(start("198.51.100.1", 3000), 202);
-  EXPECT_EQ(start("203.0.113.9, 198.51.100.1", 3001), 429);  // ignores the client's own entry
+  EXPECT_EQ(start("203.0.113.9, 198.51.100.1", 3001), 429);  // the client's own entry is ignored
   EXPECT_EQ(start("198.51.100.2", 3002), 202);
 }
 

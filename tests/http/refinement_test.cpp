@@ -35,13 +35,13 @@ class RefinementStream : public HttpTest {
 TEST_F(RefinementStream, DoublesSamplesInEachPass) {
   EXPECT_EQ(samples_of(refine(view(1, 64) + "&technique=path")), (std::vector{1, 2, 4, 8, 16, 32, 64}));
   EXPECT_EQ(samples_of(refine(view(1, 12) + "&technique=path")), (std::vector{1, 3, 6, 12}));
-  // A single sample of this technique lies at the pixel centre and is not one of a longer sequence.
+  // A single sample of this technique is at the pixel centre and not part of a longer sequence.
   EXPECT_EQ(samples_of(refine(view(1, 8))), (std::vector{2, 4, 8}));
   EXPECT_EQ(samples_of(refine(view(1, 1))), (std::vector{1}));
 }
 
-// Another daemon renders each image directly. This one would answer from its cache.
-TEST_F(RefinementStream, MatchesPictureOfEachSampleCount) {
+// Another daemon renders each image, because this one would return it from its cache.
+TEST_F(RefinementStream, MatchesImageOfEachSampleCount) {
   Daemon other;
   httplib::Client client = other.client();
   client.Post("/v1/scenes", small_scene().dump(), "application/json");
@@ -78,14 +78,14 @@ TEST_F(RefinementStream, TracesEachSampleOnce) {
   EXPECT_EQ(std::to_string(rays_of(frames)), whole->get_header_value("Orrery-Rays"));
 }
 
-TEST_F(RefinementStream, EndsAtOnceIfPictureIsCached) {
+TEST_F(RefinementStream, EndsAtOnceIfImageIsCached) {
   ASSERT_GT(refine(view(4, 16)).size(), 1u);
   const double before = daemon().metric("orrery_rays_total");
   const auto again = refine(view(4, 16));
   EXPECT_EQ(samples_of(again), (std::vector{16}));
   EXPECT_EQ(again.at(0).header.at("rays"), 0);
   EXPECT_GT(again.at(0).header.at("error").at("rays"), 0);
-  const auto part = client_.Get(scene_ + "/frame.png?" + view(4, 8));  // images of passes are cached, too
+  const auto part = client_.Get(scene_ + "/frame.png?" + view(4, 8));  // images of passes are also cached
   EXPECT_FALSE(part->has_header("Orrery-Rays"));
   EXPECT_EQ(daemon().metric("orrery_rays_total"), before);
 }
@@ -111,7 +111,7 @@ TEST_F(RefinementStream, RejectsInvalidRequestsBeforeStreaming) {
   EXPECT_TRUE(daemon().wait_until_idle());
 }
 
-TEST(RefinementMemory, CountsAgainstClientShare) {
+TEST(RefinementMemory, CountsAgainstMemoryLimitOfClient) {
   Daemon daemon({"--memory-bytes", "400000000"});
   httplib::Client client = daemon.client();
   const auto posted = client.Post("/v1/scenes", small_scene().dump(), "application/json");

@@ -23,7 +23,7 @@ std::string bytes_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-TEST_F(Render, ReturnsPictureOfPostedScene) {
+TEST_F(Render, ReturnsImageOfPostedScene) {
   const auto result = render(small_scene());
   ASSERT_TRUE(result);
   ASSERT_EQ(result->status, 200) << result->body;
@@ -52,9 +52,9 @@ TEST_F(Render, MatchesCommandLineOutput) {
   std::filesystem::remove_all(folder);
 }
 
-TEST_F(Render, ReadsFormBodyAsJson) {  // as `curl --data-binary` labels it
+TEST_F(Render, ReadsFormBodyAsJson) {  // the default type of `curl --data-binary`
   std::string scene = small_scene().dump();
-  scene.resize(20'000, ' ');  // longer than httplib allows for forms
+  scene.resize(20'000, ' ');  // longer than the limit of httplib for forms
   const auto result = client_.Post("/v1/render", scene, "application/x-www-form-urlencoded");
   ASSERT_TRUE(result);
   EXPECT_EQ(result->status, 200) << result->body;
@@ -83,7 +83,7 @@ TEST_F(Render, SelectsFormatByAccept) {
   EXPECT_EQ(two_lines->get_header_value("Content-Type"), "image/jpeg");
 }
 
-// Bodies in each format from a daemon with these settings, and the rays traced for each.
+// Response bodies in each format from a daemon with these settings, and the rays traced for each.
 struct Formats {
   std::vector<std::string> bodies;
   std::vector<double> rays;
@@ -104,7 +104,7 @@ struct Formats {
 };
 
 TEST_F(Render, ReusesCachedFilmForAllFormats) {
-  const Formats once({}), each({"--film-bytes", "0"});
+  const Formats once({}), each({"--film-cache-bytes", "0"});
   EXPECT_GT(once.rays[0], 48 * 32);
   EXPECT_EQ(once.rays, (std::vector{once.rays[0], 0.0, 0.0}));
   EXPECT_EQ(each.rays, (std::vector{once.rays[0], once.rays[0], once.rays[0]}));
@@ -116,7 +116,8 @@ TEST_F(Render, LimitsLayerBytes) {
   httplib::Client client = daemon.client();
   const auto limits = nlohmann::json::parse(client.Get("/v1/limits")->body);
   const std::size_t most = limits.at("work_bytes").get<std::size_t>() / 2;
-  // Radiance, depth and normal, each with a weight but the first: 9 planes of 8 bytes a pixel.
+  // Radiance, depth and normal have 7 planes, and depth and normal one weight each, for 9 planes of 8 bytes
+  // per pixel.
   constexpr std::size_t kPixel = 72, kHeight = 100, kRow = kPixel * kHeight;
   const auto answer = [&](std::size_t width, const char* type) {
     const nlohmann::json body = {{"scene", small_scene()},
@@ -142,14 +143,14 @@ TEST_F(Render, OmitsSceneLayersFromFormatsWithoutLayers) {
   EXPECT_EQ(result->body, render(small_scene())->body);
 }
 
-TEST_F(Render, WarnsAboutUselessPictures) {
+TEST_F(Render, WarnsAboutUselessImages) {
   const auto warning = [&](const nlohmann::json& scene) {
-    for (int i = 0; i < 2; ++i) render(scene);  // also from the cache
+    for (int i = 0; i < 2; ++i) render(scene);  // the second response is from the cache
     return render(scene)->get_header_value("Orrery-Warning");
   };
   EXPECT_EQ(warning(small_scene()), "");
   auto scene = small_scene({{"lights", nlohmann::json::array()}, {"ambient", {0, 0, 0}}});
-  scene["objects"].erase(1);  // the mirror, which shows the background
+  scene["objects"].erase(1);  // the mirror, which reflects the background
   scene["camera"]["look_at"] = {1000, 1, 4};
   const std::string told = warning(scene);
   EXPECT_NE(told.find("/lights: "), std::string::npos) << told;
@@ -179,7 +180,7 @@ TEST_F(Render, ReturnsIdOfRenderedScene) {
   EXPECT_EQ(client_.Get(path + "/frame.png")->body, rendered->body);
   EXPECT_EQ(render({{"scene_id", id}})->get_header_value("Orrery-Scene-Id"), id);
   const auto kept = client_.Post("/v1/scenes", scene.dump(), "application/json");
-  EXPECT_EQ(kept->status, 201) << "kept from now on";
+  EXPECT_EQ(kept->status, 201) << "the scene is now kept";
   EXPECT_EQ(nlohmann::json::parse(kept->body).at("id"), id);
   EXPECT_EQ(client_.Post("/v1/scenes", scene.dump(), "application/json")->status, 200);
   EXPECT_EQ(client_.Delete(path)->status, 204);
@@ -218,8 +219,8 @@ TEST_F(Render, RejectsQueryOptionsInPost) {
 
 constexpr const char* kJson = "application/json";
 
-// The limit is 2 threads x 10 s x 50 million rays. The scene has two balls, one a mirror: half of the rays
-// continue at each of 5 levels, the others sample one light.
+// The limit is 2 threads x 10 s x 50 million rays. The scene has two balls, one of them a mirror, so half of
+// the rays continue at each of 5 levels. The other half sample one light.
 TEST(RayLimit, RejectsExpensiveRendersAndSuggestsJobs) {
   Daemon daemon({"--threads", "2", "--request-seconds", "10"});
   httplib::Client client = daemon.client();
@@ -240,14 +241,14 @@ TEST(RayLimit, RejectsExpensiveRendersAndSuggestsJobs) {
   for (const char* address : {"/frame.png?", "/orbit?frames=2&"})
     expect_refused(client.Get(scene + address + "width=4096&height=4096&samples=256"));
   EXPECT_TRUE(test::eventually([&] {  // counted after the response
-    return daemon.metric("orrery_refusals_total{reason=\"request_rays\"}") == 3;
+    return daemon.metric("orrery_rejected_requests_total{reason=\"request_rays\"}") == 3;
   }));
   EXPECT_EQ(daemon.metric("orrery_rays_total"), 0);
   EXPECT_EQ(nlohmann::json::parse(client.Get("/v1/limits")->body).at("request_rays"), 1'000'000'000);
   EXPECT_EQ(client.Post("/v1/jobs", body.dump(), kJson)->status, 202);
 }
 
-// 48 x 32 pixels have an estimate of 4,536 rays and take fewer, which lowers the next estimate.
+// A render of 48 x 32 pixels has an estimate of 4,536 rays and traces fewer, which lowers the next estimate.
 TEST(RayLimit, UsesMeasuredRaysOfScene) {
   Daemon daemon({"--request-rays", "4536"});
   httplib::Client client = daemon.client();
@@ -262,7 +263,7 @@ TEST(RayLimit, UsesMeasuredRaysOfScene) {
   EXPECT_EQ(render(49)->status, 200);
 }
 
-// About a second of concurrent work, with no estimate for the scene yet.
+// The renders take about a second, without an earlier estimate for the scene.
 TEST(ConcurrentRenders, CompletesAllRendersOfSample) {
   Daemon daemon;
   const auto scene = nlohmann::json::parse(daemon.client().Get("/scenes/paper.json")->body);

@@ -12,11 +12,11 @@
 namespace orrery {
 namespace {
 
-// Connection to a socket of the test.
+// Connection to a socket that the test reads.
 class Wire {
  public:
   Wire() : Wire(0) {}
-  // `send_buffer` is the size of the kernel's send buffer in bytes, 0 for its default.
+  // `send_buffer` is the size of the kernel's send buffer in bytes, or 0 for its default.
   explicit Wire(int send_buffer) {
     int ends[2];
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends) != 0)
@@ -89,7 +89,7 @@ TEST(ResponseWriter, OmitsBodyWhereForbidden) {  // RFC 9110, 6.4.1 and 9.3.2
   EXPECT_EQ(written({.status = 304, .body = "x"}), "HTTP/1.1 304 Not Modified\r\n\r\n");
   EXPECT_EQ(written({.status = 304, .stream = stream_of({"x"}).stream}), "HTTP/1.1 304 Not Modified\r\n\r\n");
   EXPECT_EQ(written({.body = "four"}, {.head_only = true}), "HTTP/1.1 200 OK\r\nContent-Length: 4\r\n\r\n");
-  EXPECT_EQ(written({}, {.head_only = true}), "HTTP/1.1 200 OK\r\n\r\n");  // unknown length
+  EXPECT_EQ(written({}, {.head_only = true}), "HTTP/1.1 200 OK\r\n\r\n");  // the length is unknown
   EXPECT_EQ(written(stream_of({"x"}), {.head_only = true}), "HTTP/1.1 200 OK\r\n\r\n");
 }
 

@@ -67,9 +67,9 @@ TEST_F(Routes, RequiresExpectedScopes) {
     EXPECT_EQ(find("GET", path).scope, Scope::none) << path;
 }
 
-// Returns a path of the API description with its placeholders replaced.
+// Returns a path of the API description with values for its placeholders.
 std::string with_placeholders_filled(std::string path) {
-  // Samples have one route each.
+  // Each sample scene has its own route.
   if (path.starts_with("/scenes/thumbnails/")) return "/scenes/thumbnails/paper.webp";
   if (path.starts_with("/scenes/")) return "/scenes/paper.json";
   for (std::size_t at; (at = path.find('{')) != std::string::npos;)
@@ -112,7 +112,7 @@ TEST_F(Routes, LogsOnlyHealthProbesAtDebugLevel) {
     EXPECT_EQ(find("GET", path).log, LogLevel::info);
 }
 
-// Returns a body for the route that exceeds the memory of one client when parsed.
+// Returns a body for the route that exceeds the memory limit of a client when parsed.
 std::string hostile_body(const Route& route) {
   std::string body;
   if (route.pattern == "/v1/assets/{sha256}") {
@@ -147,7 +147,7 @@ TEST(RouteBodies, ChargesClientAccount) {
     request.body = Body(bytes);
     try {
       route.handler(request);
-      ADD_FAILURE() << route.pattern << " took it";
+      ADD_FAILURE() << route.pattern << " accepted the body";
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find("work_bytes)"), std::string::npos)
           << route.pattern << ": " << error.what();
@@ -160,8 +160,8 @@ TEST_F(Routes, ReadsBodiesOnlyWhereExpected) {
   for (const char* path : {"/v1/render", "/v1/scenes", "/v1/jobs", "/v1/scenes/a/charts", "/v1/shares"}) {
     const Route& route = find("POST", path);
     ASSERT_TRUE(route.body) << path;
-    EXPECT_EQ(std::string(route.body->limit.name), "body_bytes");
-    EXPECT_EQ(route.body->limit.bytes, app_.settings().body_bytes);
+    EXPECT_EQ(std::string(route.body->limit.name), "max_request_body_bytes");
+    EXPECT_EQ(route.body->limit.bytes, app_.settings().max_request_body_bytes);
   }
   const Route& asset = find("PUT", "/v1/assets/a");
   ASSERT_TRUE(asset.body);

@@ -102,13 +102,13 @@ TEST_F(Scenes, AllowsRemovalByPostersOnly) {
   expect_problem(other.Delete(path), 403);
   EXPECT_EQ(other.Post("/v1/scenes", scene, "application/json")->status, 200);
   EXPECT_EQ(client_.Delete(path)->status, 204);
-  EXPECT_EQ(client_.Get(path)->status, 200) << "the other client keeps it";
+  EXPECT_EQ(client_.Get(path)->status, 200) << "the other client keeps the scene";
   EXPECT_EQ(other.Delete(path)->status, 204);
   expect_problem(client_.Get(path), 404);
 }
 
 TEST(SceneStore, EvictsLeastRecentlyUsedScenes) {
-  Daemon daemon({"--store-bytes", "20000"});
+  Daemon daemon({"--scene-cache-bytes", "20000"});
   httplib::Client client = daemon.client();
   const auto post = [&](const char* title) {
     const auto result = client.Post("/v1/scenes", small_scene({{"title", title}}).dump(), "application/json");

@@ -3,7 +3,8 @@
 
 #include "tests/http/daemon.h"
 
-// Tests clients that hold connections without progress. Other clients are served, and no resource leaks.
+// Tests clients that keep connections open without progress. Other clients must be served, and no resource
+// may leak.
 namespace orrery {
 namespace {
 
@@ -13,7 +14,8 @@ constexpr int kConnections = 8;
 
 class SlowClients : public ::testing::Test {
  protected:
-  // Opens twice as many connections as allowed and sends `bytes` on each. The second half evicts the first.
+  // Opens twice as many connections as allowed and sends `bytes` on each. The connections of the second half
+  // evict those of the first.
   Clients open(const std::string& bytes, int receive_buffer = 0) {
     Clients clients;
     for (int i = 0; i < 2 * kConnections; ++i) {
@@ -38,7 +40,7 @@ class SlowClients : public ::testing::Test {
     EXPECT_LE(daemon_.open_files(), before);
   }
 
-  // Sleeps longer than a connection may be idle while others wait.
+  // Sleeps longer than the idle timeout of a connection while others wait.
   static void pause() { std::this_thread::sleep_for(std::chrono::milliseconds(50)); }
 
   Daemon daemon_{{"--connections", std::to_string(kConnections)}};
@@ -57,7 +59,7 @@ TEST_F(SlowClients, EvictsClientsWithSlowHeads) {
   Clients clients = open("GET /healthz HTTP/1.1\r\nHost: x\r\n");
   clients.back()->send("A: b\r\n");
   expect_others_are_served();
-  const std::string answer = clients.front()->receive_all();  // the oldest was evicted first
+  const std::string answer = clients.front()->receive_all();  // the oldest connection was evicted first
   EXPECT_EQ(answer.substr(0, 12), "HTTP/1.1 408");
   EXPECT_NE(answer.find("(connections)"), std::string::npos) << answer;
   clients.clear();
@@ -77,7 +79,7 @@ TEST_F(SlowClients, EvictsClientsWithSlowBodies) {
 
 TEST_F(SlowClients, EvictsClientsThatDoNotRead) {
   const std::size_t before = daemon_.open_files();
-  // Requests for more than both kernel buffers hold, never read.
+  // Requests more bytes than both kernel buffers can store, and reads none.
   std::string requests;
   for (int i = 0; i < 200; ++i) requests += "GET /scenes/sphereflake-3.json HTTP/1.1\r\nHost: x\r\n\r\n";
   Clients clients = open(requests, 4096);

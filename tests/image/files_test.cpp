@@ -21,7 +21,7 @@ Image noise(int width, int height) {
   for (std::byte& b : image.bytes()) b = static_cast<std::byte>(random.bits());
   return image;
 }
-// Returns a smooth picture, which JPEG encodes with small errors.
+// Returns a smooth image, which JPEG encodes with small errors.
 Image smooth(int width, int height) {
   Image image(width, height, PixelFormat::srgb8);
   std::size_t i = 0;
@@ -63,7 +63,7 @@ TEST(Png, RoundTripsEveryByteAtEveryLevel) {
       const Image image = noise(width, height);
       const std::string file = encode_png(image, {.level = level});
       EXPECT_TRUE(same(decode_image(bytes_of(file)), image)) << width << " x " << height;
-      EXPECT_EQ(file, encode_png(image, {.level = level})) << "the same picture gives the same bytes";
+      EXPECT_EQ(file, encode_png(image, {.level = level})) << "equal images have equal bytes";
     }
 }
 
@@ -117,7 +117,7 @@ TEST(ImageDecoder, RejectsTruncatedFiles) {
           << file.substr(1, 3) << " cut to " << kept << " of " << file.size();
 }
 
-// Changes up to 3 of the first 600 bytes: the file is rejected or decoded to some picture, without a crash.
+// Changes up to 3 of the first 600 bytes. The file must be rejected or decoded, without a crash.
 TEST(ImageDecoder, SurvivesCorruptedFiles) {
   test::Random random(3);
   for (const std::string& file :
@@ -139,7 +139,7 @@ void put_big_endian(std::string& file, std::size_t at, std::uint32_t value) {
   for (std::size_t i = 0; i < 4; ++i) file[at + i] = static_cast<char>(value >> (24 - 8 * i));
 }
 
-// Headers with huge sizes are rejected before any memory is allocated for them.
+// Headers with huge sizes are rejected before memory for the pixels is allocated.
 TEST(ImageDecoder, RejectsHugeDimensionsInHeaders) {
   std::string png = encode_png(noise(8, 8));
   put_big_endian(png, 16, 0x7fffffff);

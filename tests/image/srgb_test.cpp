@@ -12,7 +12,7 @@
 namespace orrery {
 namespace {
 
-// Returns the codes of linear values.
+// Returns the 8-bit sRGB codes of linear values.
 std::vector<int> codes_of(const std::vector<float>& values) {
   constexpr int kRow = 4096;
   struct alignas(64) Row {
@@ -45,7 +45,8 @@ TEST(Srgb, RoundsToNearestCodeOfStandardCurve) {
   for (int i = 0; i <= 1'000'000; ++i) values.push_back(static_cast<float>(i) * 1e-6f);
   test::Random random(1);
   for (int i = 0; i < 500'000; ++i) values.push_back(static_cast<float>(random.magnitude(1e-6, 1)));
-  for (float x = 0.003f; x < 0.0033f; x = std::nextafter(x, 1.0f)) values.push_back(x);  // start of the curve
+  // Around the end of the linear segment.
+  for (float x = 0.003f; x < 0.0033f; x = std::nextafter(x, 1.0f)) values.push_back(x);
   const std::vector<int> codes = codes_of(values);
   int wrong = 0, doubtful = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {

@@ -49,7 +49,7 @@ Json sun(double degrees, const Vec3d& from = Vec3d(1, 2, -0.5)) {
   return {{"type", "directional"}, {"direction_to_light", numbers(from)}, {"angle_degrees", degrees}};
 }
 
-// Counts samples in parts of equal solid angle of the sun's disc: rings of equal height, and sectors.
+// Counts samples in parts of the sun's disc with equal solid angles: rings of equal height and sectors.
 TEST(Sun, SamplesDiscUniformly) {
   covers("light-24");
   constexpr int kRings = 8, kSectors = 16, kSamples = 64;
@@ -87,7 +87,8 @@ TEST(Sun, ReportsDensityAndRadianceOfSamples) {
     kernel->rays.direction = kernel->out.shadow.direction;
     kernel->look();
     for (int i = 0; i < kBatch; ++i) {
-      ASSERT_NEAR(kernel->pdf[i] * 2 * kPi * (1 - std::cos(half)), 0.25, 1e-9) << "times the probability";
+      ASSERT_NEAR(kernel->pdf[i] * 2 * kPi * (1 - std::cos(half)), 0.25, 1e-9)
+          << "includes the selection probability";
       ASSERT_EQ(kernel->out.pdf[i], kernel->pdf[i]);
       ASSERT_NEAR(kernel->out.incident[i].x * kPi * kernel->pdf[i] / kernel->radiance[i].x, 1, 1e-12);
       ASSERT_NEAR(kernel->radiance[i].x * std::sin(half) * std::sin(half), 1, 1e-9);
@@ -102,7 +103,7 @@ TEST(Sun, ReportsDensityAndRadianceOfSamples) {
   }
 }
 
-// A white floor tilted under the sun reads the cosine of the tilt, as under parallel light.
+// The radiance of a tilted white floor under the sun is the cosine of the tilt, as under parallel light.
 TEST(Sun, MatchesParallelLightOfSameIntensity) {
   covers("light-17");
   for (const double degrees : {0.0, 0.53, 10.0, 60.0})
@@ -128,7 +129,7 @@ TEST(Sun, IsVisibleToCameraAndInMirrors) {
   EXPECT_LT(mirrored, radiance);
 }
 
-// Other techniques replace the sun by parallel light.
+// Techniques other than path tracing treat the sun as parallel light.
 TEST(Sun, ActsAsParallelLightInWhittedTracing) {
   Json scene = scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]}]");
   scene["lights"] = Json::array({sun(60, Vec3d(0.6, 0.8, 0))});
@@ -149,7 +150,7 @@ Json over_floor(const Vec3d& from, const Vec3d& to) {
   return scene;
 }
 
-// Returns the radiance of a floor point lit by a line, with 200,000 points in place of the line.
+// Returns the radiance of a white floor at `at`, with 200,000 point lights in place of the line light.
 double irradiance_by_points(const Vec3d& from, const Vec3d& to, const Vec3d& at) {
   constexpr int kDots = 200'000;
   double sum = 0;
@@ -165,7 +166,7 @@ TEST(Line, MatchesIrradianceOfPointLights) {
   const Estimate middle =
       estimate(over_floor(Vec3d(-1, 1, 0), Vec3d(1, 1, 0)), Vec3d(0, 0.05, 30), Vec3d(), 1);
   EXPECT_NEAR(middle.mean, std::numbers::sqrt2 / kPi, 4 * middle.error());
-  EXPECT_LT(middle.sd / middle.mean, 0.15) << "what is left of the noise is the cosine at the floor";
+  EXPECT_LT(middle.sd / middle.mean, 0.15) << "only the cosine at the floor causes noise";
   const Estimate endless =
       estimate(over_floor(Vec3d(-1e5, 1, 0), Vec3d(1e5, 1, 0)), Vec3d(0, 0.05, 30), Vec3d(), 1);
   EXPECT_NEAR(endless.mean, 2 / kPi, 4 * endless.error());
@@ -178,7 +179,8 @@ TEST(Line, MatchesIrradianceOfPointLights) {
   }
 }
 
-// The floor lies on the axis of a vertical line above it, or next to it: 1 / near - 1 / far in the limit.
+// The floor point is on or near the axis of a vertical line light above it. In the limit, the irradiance is 1
+// / near - 1 / far.
 TEST(Line, StaysFiniteOnItsAxis) {
   for (const double aside : {1e-3, 1e-6, 1e-9}) {
     const Estimate found =
@@ -186,7 +188,7 @@ TEST(Line, StaysFiniteOnItsAxis) {
     EXPECT_NEAR(found.mean, (1 - 1.0 / 3) / kPi, 1e-4) << aside;
   }
   EXPECT_EQ(estimate(over_floor(Vec3d(0, 1, 0), Vec3d(0, 3, 0)), Vec3d(0, 0.05, 30), Vec3d(), 1).sd, 0)
-      << "finite on the axis itself";
+      << "finite on the axis";
 }
 
 TEST(Line, ActsAsPointLightInWhittedTracing) {

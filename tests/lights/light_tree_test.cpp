@@ -18,7 +18,7 @@ LightBounds small_light(Random& random) {
   return {.centre = random.in_cube(1), .strength = random.between(1, 3), .attenuation = {0, 0, 1}};
 }
 
-// Returns a light of any kind: flat or round lamp, point with or without attenuation, or sun.
+// Returns the bounds of a random flat or round lamp, point light with or without attenuation, or sun.
 LightBounds any_light(Random& random) {
   LightBounds light = small_light(random);
   switch (random.below(5)) {
@@ -196,8 +196,8 @@ TEST(LightTree, IsScaleInvariant) {
   }
 }
 
-// Coincident lights and lights of no strength are selected evenly. A point at a light's centre gives finite
-// probabilities.
+// Coincident lights and lights of zero strength have equal probabilities. At a light's centre, all
+// probabilities are finite.
 TEST(LightTree, SelectsAmongCoincidentLights) {
   for (const double strength : {0.0, 1.0}) {
     const LightTree<double> tree(std::vector<LightBounds>(
@@ -211,9 +211,9 @@ TEST(LightTree, SelectsAmongCoincidentLights) {
   }
 }
 
-// The floor reads the sum of (radius / distance)^2 times the cosine over emissive balls, some 30 times as far
-// as others. One sample of 40 balls has a relative standard deviation of 2.67 with uniform selection, and of
-// 0.41 if selected one by one by distance.
+// The radiance of the floor is the sum of (radius / distance)^2 times the cosine over emissive balls.
+// Distances differ by a factor of up to 30. With 40 balls, one sample has a relative standard deviation of
+// 2.67 for uniform selection, and of 0.41 for selection by distance.
 TEST(LightTree, MatchesIrradianceOfNearAndFarBalls) {
   covers("light-17");
   for (const int count : {5, 40}) {

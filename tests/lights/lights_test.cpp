@@ -44,7 +44,7 @@ TEST(Attenuation, ClampsFormulaToOne) {
   EXPECT_NEAR(weakened(Vec3d(.25, .1, .01), 10), 0.4444444444444444, 1e-15);
   EXPECT_EQ(weakened(Vec3d(1, 0, 0), 1e9), 1);
   EXPECT_EQ(weakened(Vec3d(0, 0, 1), 4), 1.0 / 16);
-  EXPECT_EQ(weakened(Vec3d(0, 1, 0), 0.5), 1) << "never more than the light itself";
+  EXPECT_EQ(weakened(Vec3d(0, 1, 0), 0.5), 1) << "attenuation never amplifies";
 }
 
 TEST(Attenuation, FollowsInverseSquareIfUnlimited) {
@@ -68,7 +68,7 @@ TEST(Attenuation, FollowsInverseSquareIfUnlimited) {
   }
 }
 
-TEST(Attenuation, StaysInTheUnitIntervalAtAnyDistance) {
+TEST(Attenuation, StaysInUnitIntervalAtAnyDistance) {
   covers("B9 B10");
   for (const Vec3d& c : {Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d(0, 0, 1), Vec3d(0, 0, 1e12),
                          Vec3d(.25, .1, .01), Vec3d(1e-300, 0, 0)})
@@ -160,7 +160,7 @@ TEST(AllLights, SendsUnitDirectionsWithinIntensity) {
           "{'type': 'point', 'position': [1, 2, 3], 'intensity': [1, 2, 3], 'attenuation': [0.5, 0.1, 0.1]}"),
       json("{'type': 'spot', 'position': [1, 2, 3], 'direction': [-1, -2, -3], 'intensity': [1, 2, 3]}"),
       json("{'type': 'line', 'from': [8, 9, 8], 'to': [9, 9, 8], 'intensity_per_metre': [1, 2, 3]}")};
-  ASSERT_EQ(lights.size(), light_types().size()) << "a light type without a test";
+  ASSERT_EQ(lights.size(), light_types().size()) << "this test lacks a light type";
   Random random(1);
   for (const Json& light : lights)
     for (int i = 0; i < 300; ++i) {

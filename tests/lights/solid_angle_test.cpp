@@ -14,7 +14,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 
 struct Square {
-  Vec3d corner, a, b;  // from the point; unit directions of the sides
+  Vec3d corner, a, b;  // corner relative to the point, unit directions of the sides
   double length_a, length_b;
 };
 template <class T>
@@ -23,7 +23,7 @@ double angle_of(const Square& s) {
                                       Vec3<T>(s.b), static_cast<T>(s.length_b), Vec3<T>(cross(s.a, s.b)))
                     .angle()};
 }
-// Floats are checked above 0.02 sr only, since smaller emitters are sampled by area.
+// Checks float only above 0.02 sr, because smaller emitters are sampled by area.
 void expect_angle(const Square& square, double expected) {
   EXPECT_NEAR(angle_of<double>(square), expected, 1e-12);
   if (expected > 0.02) {
@@ -31,7 +31,7 @@ void expect_angle(const Square& square, double expected) {
   }
 }
 
-// Unit squares above their centre, and a quarter plane, which fills an octant.
+// Unit squares seen from above their centre, and a quarter plane, which fills one octant.
 TEST(SolidAngle, MatchesClosedFormForRectangles) {
   covers("light-18");
   const Vec3d x(1, 0, 0), z(0, 0, 1);
@@ -70,7 +70,7 @@ TEST(SolidAngle, EqualsSumOfTwoTrianglesForRectangles) {
   }
 }
 
-// A sphere is sampled evenly over its cone, so its density is one over the cone's solid angle.
+// A sphere is sampled uniformly over the cone that it subtends, so its density is 1 / solid angle.
 TEST(SolidAngle, EqualsConeForSpheres) {
   covers("light-18");
   for (const auto& [radius, distance] : {std::pair{0.5, 2.0}, {0.9, 1.0}, {1.0, 10.0}, {0.001, 3.0}}) {

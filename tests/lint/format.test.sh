@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Every C++ file is as clang-format leaves it.
+# Checks that clang-format would change no C++ file.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 if ! command -v clang-format >/dev/null; then

@@ -1,6 +1,6 @@
 #!/usr/bin/env node
-// Checks the source tree: allowed includes, complete registries, file length. Without arguments it checks this
-// repository; with --self-test, small trees that each break one rule.
+// Checks the source tree: allowed includes, complete registries and file length. Without arguments it checks
+// this repository. With --self-test it checks small trees that each break one rule.
 
 import { mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -33,21 +33,21 @@ const kFloors = [
   ["server"],
 ];
 const kRegisteredRooms = [...kFloors[3].filter((room) => room !== "core/stages"), "core/techniques", "core/stability"];
-const kGenerated = ["core/base/version.h"]; // lies in the build folder
+const kGenerated = ["core/base/version.h"]; // in the build folder
 const kMaxLines = 500;
 const kTextFolders = [".ci", "core", "docker", "docs", "packaging", "scenes", "script", "server", "tests", "web"];
 const kCounted = new Set([".cpp", ".h", ".js", ".mjs", ".css", ".html", ".sh", ".cmake"]);
 const kText = new Set([...kCounted, ".in", ".md", ".json", ".yaml", ".yml", ".txt", ".svg", ".pov", ".service", ""]);
-const kUnread = new Set(["package-lock.json", "LICENSE", ".git"]); // the last is a file in a worktree
+const kUnread = new Set(["package-lock.json", "LICENSE", ".git"]); // .git is a file in a worktree
 const kLibraries = [
   { name: "nlohmann", header: /^nlohmann\//, rooms: /^(core\/params|core\/meshes|server)\// },
-  { name: "httplib", header: /^httplib\.h$/, rooms: /^tests\// }, // 20,000 lines of header
+  { name: "httplib", header: /^httplib\.h$/, rooms: /^tests\// }, // a header of 20,000 lines
   { name: "libpng", header: /^png\.h$/, rooms: /^core\/image\// },
   { name: "turbojpeg", header: /^(turbojpeg|jpeglib)\.h$/, rooms: /^core\/image\// },
   { name: "OpenImageIO", header: /^OpenImageIO\//, rooms: /^core\/pictures\/decoder\// },
   { name: "OpenEXR", header: /^(OpenEXR\/|Imath\/|Imf|Imath|openexr)/, rooms: /^core\/image\// },
 ];
-// Folders that exist on one machine only. (Preceded by a word or a dot it is a relative path.)
+// Folders that exist on one machine only. After a word or a dot, the match would be part of a relative path.
 const kMachinePath = /(?<![\w.)}\]-])(?:\/(?:work|home|root|Users|mnt)\/|[A-Z]:\\\\?Users)/;
 
 const roomOf = (path) => (path.startsWith("server/") ? "server" : path.split("/").slice(0, 2).join("/"));
@@ -99,7 +99,7 @@ function judgeText(contents, complain) {
     if (lines.at(-1) === "") lines.pop();
     const script = text.startsWith("#!") || basename(path) === "CMakeLists.txt";
     if ((script || kCounted.has(extname(path))) && lines.length > kMaxLines) {
-      complain("length", path, kMaxLines + 1, `${lines.length} lines, at most ${kMaxLines} are allowed`);
+      complain("length", path, kMaxLines + 1, `file has ${lines.length} lines (limit ${kMaxLines})`);
     }
     lines.forEach((line, index) => {
       const match = line.match(kMachinePath);
@@ -111,15 +111,15 @@ function judgeText(contents, complain) {
 function judgeIncludes(includes, complain) {
   for (const [path, list] of includes) {
     const floor = floorOf(path);
-    if (floor < 0) complain("room", path, 1, `${roomOf(path)} is not a room of the design`);
+    if (floor < 0) complain("room", path, 1, `${roomOf(path)} is not in the list of layers`);
     for (const { line, target, quoted } of list) {
       if (!quoted) continue;
       if (!includes.has(target) && !kGenerated.includes(target)) {
-        complain("root", path, line, `"${target}" is no file of core/ or server/ from the repository root`);
+        complain("root", path, line, `"${target}" must be a file in core/ or server/, relative to the repository root`);
       } else if (floorOf(target) > floor) {
-        complain("floor", path, line, `"${target}" lies on a higher floor`);
+        complain("floor", path, line, `"${target}" is in a higher layer`);
       } else if (floorOf(target) === floor && roomOf(target) !== roomOf(path)) {
-        complain("neighbour", path, line, `"${target}" lies in another room of the same floor`);
+        complain("neighbour", path, line, `"${target}" is in another folder of the same layer`);
       }
     }
   }
@@ -130,7 +130,7 @@ function judgeLibraries(includes, complain) {
     for (const { line, target } of list) {
       for (const { name, header, rooms } of kLibraries) {
         if (header.test(target) && !rooms.test(path)) {
-          complain("library", path, line, `${name} may not be included here (only in ${rooms.source})`);
+          complain("library", path, line, `${name} must not be included here (only in ${rooms.source})`);
         }
       }
     }
@@ -150,9 +150,9 @@ function judgeCycles(includes, complain) {
   for (const path of includes.keys()) visit(path, []);
 }
 
-// A system core/shapes/sphere.cpp defines sphere_type() (or _channel(), _row()) and is listed if registry.cpp
-// names sphere, make_sphere or sphere_<word>. Another .cpp is what several systems of the room share, and has
-// a header of its own.
+// A type in core/shapes/sphere.cpp defines sphere_type() (or _channel(), _row()). It is listed if
+// registry.cpp names sphere, make_sphere or sphere_<word>. Any other .cpp file must have a header of the same
+// name, because several types share its code.
 function judgeRegistries(contents, complain) {
   for (const path of contents.keys()) {
     if (!path.endsWith(".cpp") || !kRegisteredRooms.includes(dirname(path))) continue;
@@ -162,7 +162,7 @@ function judgeRegistries(contents, complain) {
     const registry = contents.get(`${dirname(path)}/registry.cpp`) ?? "";
     const code = registry.replace(/\/\/.*|\/\*[^]*?\*\/|^\s*#.*/gm, "");
     if (!new RegExp(`\\b(?:make_)?${name}(?:_[a-z]+)?\\b`).test(code)) {
-      complain("registry", path, 1, `${dirname(path)}/registry.cpp does not list it`);
+      complain("registry", path, 1, `must be listed in ${dirname(path)}/registry.cpp`);
     }
   }
 }
@@ -170,7 +170,7 @@ function judgeRegistries(contents, complain) {
 // ---- self-test ----
 
 const machineFolder = ["", "work", "checkout"].join("/");
-const innerFolder = ["..", "work", "checkout"].join("/"); // begins no path from the root
+const innerFolder = ["..", "work", "checkout"].join("/"); // not an absolute path
 const kGoodTree = {
   "core/base/a.h": "#pragma once\n#include <string>\n",
   "core/params/params.cpp": '#include <nlohmann/json.hpp>\n#include "core/base/a.h"\n',

@@ -1,7 +1,7 @@
 #!/usr/bin/env node
-// Counts hard-to-read sentences in comments and documents, per folder. A folder may not have more of them than
-// tests/lint/prose.json allows. --update lowers the allowed counts, --list [FOLDER] prints the sentences, and
-// --self-test judges small texts instead.
+// Counts hard-to-read sentences in comments and documents, per folder. The counts of a folder must not exceed
+// its limits in tests/lint/prose.json. --update lowers the allowed counts, --list [FOLDER] prints the
+// sentences, and --self-test checks the rules with small texts.
 
 import { readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { dirname, extname, join } from "node:path";
@@ -14,7 +14,7 @@ const limitsFile = join(root, "tests/lint/prose.json");
 const folders = [".", "core", "server", "web", "tests", "docs", "script", "docker", "scenes"];
 const skippedFolders = /(?:^|\/)(?:build[^/]*|node_modules|\.git|\.cache)(?:\/|$)/;
 
-// How the comments of a file begin, or null for a document.
+// Pattern at the start of a comment line, or null for a document.
 const commentMarks = new Map([
   ...[".cpp", ".h", ".js", ".mjs", ".css", ".cl"].map((extension) => [extension, /^\s*(?:\/\/+|\/\*+|\*+\/?) ?/]),
   ...[".sh", ".py", ".cmake", ".txt", ".yml", ""].map((extension) => [extension, /^\s*# ?/]),
@@ -77,7 +77,7 @@ function commentParagraphs(path, text) {
   return paragraphs;
 }
 
-// The paragraphs, list items, table cells and headings of a Markdown document.
+// Returns the paragraphs, list items, table cells and headings of a Markdown document.
 function documentParagraphs(text) {
   const paragraphs = [[]];
   let inCode = false;
@@ -115,7 +115,7 @@ function filesOf(folder) {
     .sort();
 }
 
-// The folder that a file is counted in: core/render, server, docs.
+// Returns the folder that a file is counted in, such as core/render, server or docs.
 const roomOf = (path) => {
   const parts = dirname(path).split("/");
   return parts.slice(0, ["core", "server", "tests"].includes(parts[0]) ? 2 : 1).join("/");
@@ -162,7 +162,7 @@ function checkRepository() {
     for (const [rule, count] of Object.entries({ start, word })) {
       if (count <= limit[rule]) continue;
       ++failures;
-      console.error(`${name}: ${count} sentences break the rule "${rule}", at most ${limit[rule]} may:`);
+      console.error(`${name}: ${count} sentences break the rule "${rule}" (limit ${limit[rule]}):`);
       for (const { path, line, text } of problems.filter((problem) => problem.rule === rule))
         console.error(`  ${path}:${line}: ${text.slice(0, 120)}`);
     }
@@ -171,13 +171,13 @@ function checkRepository() {
   return failures;
 }
 
-// Writes the counts of today, or the former limits where those are lower.
+// Writes the current counts, or the previous limits where those are lower.
 function updateLimits() {
   let before = {};
   try {
     before = JSON.parse(readFileSync(limitsFile, "utf8"));
   } catch {
-    // The first counts have no limit.
+    // Without a limits file, the counts become the limits.
   }
   const limits = {};
   for (const [name, { start, word }] of judgeRepository()) {

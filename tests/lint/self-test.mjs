@@ -1,7 +1,7 @@
-// Checks a lint on small inputs, each with the rules that must fire.
+// Checks a lint with small inputs, each with the rules that it must report.
 
-// Calls `rulesOf(input)` for each [expected rules, input], prints the differences and returns their number. `show`
-// turns an input into the text of an error.
+// Calls `rulesOf(...input)` for each [expected rules, ...input], prints the differences and returns their
+// number. `show` returns the text for an input in an error.
 export function selfTest(cases, rulesOf, show) {
   let failures = 0;
   for (const [expected, ...input] of cases) {
@@ -10,6 +10,6 @@ export function selfTest(cases, rulesOf, show) {
     ++failures;
     console.error(`expected [${expected}], got [${fired}] for ${show(...input)}`);
   }
-  console.log(`${cases.length} inputs judged, ${failures} wrongly`);
+  console.log(`${cases.length} inputs, ${failures} failures`);
   return failures;
 }

@@ -1,6 +1,6 @@
 #!/usr/bin/env node
-// Limits the length of functions and forbids some names and calls. Without arguments it judges this repository; with
-// --self-test it judges small texts that each break a rule.
+// Limits the length of functions and forbids some names and calls. Without arguments it checks this
+// repository. With --self-test it checks small texts that each break a rule.
 
 import { readdirSync, readFileSync } from "node:fs";
 import { dirname, extname, join } from "node:path";
@@ -13,18 +13,19 @@ const kFolders = ["core", "server", "tests", "web", "script"];
 const kCode = new Set([".cpp", ".h", ".js", ".mjs"]);
 const kMaxLines = 60;
 
-// Names that the field has other words for.
+// Project-specific names for which the field has standard terms.
 const kPrivateNames =
   /\b(?:Trip|Meetings?|Crowd|Walkers|Rungs?|Sightings?|Thinned|Asker|Rider|Crew|Means|looseness|worsening)\b/;
-// [rule, what it forbids, the files it holds for]
+// [rule, forbidden pattern, files that the rule applies to]
 const kPatterns = [
   ["name", kPrivateNames, /\.(?:cpp|h)$/],
-  ["stop", /\bstd::function<bool\(\)>/, /^(?:core|server)\//], // std::stop_token
-  ["polling", /\bsleep_(?:for|until)\b|\busleep\b|\.wait_for\([^,()]*, *[^,]*\);/, /^(?:core|server)\//], // waits for a condition
+  ["stop", /\bstd::function<bool\(\)>/, /^(?:core|server)\//], // use std::stop_token
+  // Wait for a condition instead.
+  ["polling", /\bsleep_(?:for|until)\b|\busleep\b|\.wait_for\([^,()]*, *[^,]*\);/, /^(?:core|server)\//],
 ];
 
 const withoutComments = (line) => line.replace(/"(?:[^"\\]|\\.)*"/g, '""').replace(/\/\/.*/, "");
-// A line that opens the body of a function, a lambda or a branch. The formatters see to it that the body ends
+// A line that opens the body of a function, a lambda or a branch. Formatters guarantee that the body ends
 // with a brace that is indented no deeper.
 const indentation = (line) => line.search(/\S|$/);
 const kRow = /^\s*[{"]/; // row of a table in a function: data, not code
@@ -46,7 +47,7 @@ function judge(path, text) {
     );
     const length = lines.slice(index, end + 1).filter((other) => !kRow.test(other)).length;
     if (length > kMaxLines)
-      problems.push({ line: index + 1, rule: "length", text: `${length} lines, at most ${kMaxLines}` });
+      problems.push({ line: index + 1, rule: "length", text: `function has ${length} lines (limit ${kMaxLines})` });
   });
   return problems;
 }

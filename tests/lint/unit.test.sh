@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
-# The systemd unit: systemd understands every line of it, and finds it well locked in.
+# Checks packaging/orrery.service: systemd accepts every line and rates its sandboxing as sufficient.
 set -euo pipefail
 command -v systemd-analyze >/dev/null || { echo "skipped: systemd-analyze is not installed"; exit 77; }
 folder=$(mktemp -d)
 trap 'rm -r "$folder"' EXIT
-# The program need not be installed for that, nor its user.
+# Replaces the program and its user, which need not exist on this machine.
 sed 's|/opt/orrery/orrery|/bin/true|; s|^User=orrery|User=root|; s|/bin/kill|/bin/true|' packaging/orrery.service >"$folder/orrery.service"
 complaints=$(systemd-analyze verify "$folder/orrery.service" 2>&1 || true)
 [ -z "$complaints" ] || { echo "$complaints"; exit 1; }
 sed -i 's|^User=root|User=nobody|' "$folder/orrery.service"
-# 0 is locked in, 10 is free to do anything; systemd calls up to 2 "OK".
+# systemd rates exposure from 0 (fully sandboxed) to 10 (unrestricted). The threshold is 2.0, its limit for
+# "OK".
 systemd-analyze security --offline=true --threshold=20 --no-pager "$folder/orrery.service" | tail -1

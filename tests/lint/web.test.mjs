@@ -1,6 +1,6 @@
 #!/usr/bin/env node
-// Checks of the web page, the scripts for Node and the documents: ESLint, Prettier, html-validate and CSpell.
-// Skipped unless all four are in node_modules. --fix lets ESLint and Prettier change the files.
+// Checks the web page, the scripts for Node and the documents with ESLint, Prettier, html-validate and
+// CSpell. Skipped if one of them is not in node_modules. --fix lets ESLint and Prettier change the files.
 
 import { spawnSync } from "node:child_process";
 import { existsSync, readFileSync } from "node:fs";
@@ -11,7 +11,7 @@ const root = join(dirname(fileURLToPath(import.meta.url)), "../..");
 const SKIPPED = 77;
 const fixes = process.argv.includes("--fix");
 
-// [package, arguments]. The configuration of each tool names the files.
+// [package, arguments]. The configuration of each tool lists the files.
 const tools = [
   ["eslint", fixes ? ["--fix", "."] : ["--max-warnings", "0", "."]],
   ["prettier", fixes ? ["--write", "--log-level", "warn", "."] : ["--check", "."]],
@@ -29,7 +29,7 @@ function programOf(name) {
 
 const missing = tools.map(([name]) => name).filter((name) => !existsSync(folderOf(name)));
 if (missing.length > 0) {
-  console.log(`skipped: node_modules has no ${missing.join(", ")}; "npm ci" or script/setup installs them`);
+  console.log(`skipped: ${missing.join(", ")} not found in node_modules; run "npm ci" or script/setup`);
   process.exit(SKIPPED);
 }
 

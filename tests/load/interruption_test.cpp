@@ -10,7 +10,7 @@
 #include "tests/meshes/writers.h"
 #include "tests/support/scenes.h"
 
-// Tests cancellation of work on input of any size.
+// Tests that parsing, loading and building stop on request, whatever the size of the input.
 namespace orrery {
 namespace {
 
@@ -61,7 +61,7 @@ TEST(Interruption, StopsSmoothing) {
   }));
 }
 
-// Requests the stop when the facets allocate their memory. No later stage may allocate any.
+// Requests a stop when the facet pass allocates its memory. No later pass may allocate memory.
 TEST(Interruption, StopsSmoothingDuringFacetPass) {
   constexpr std::size_t kTriangles = 1000, kOfFacets = kTriangles * 3 * sizeof(Vec3d);
   constexpr std::size_t kOfIndices = kTriangles * 3 * sizeof(std::uint32_t);
@@ -80,7 +80,7 @@ TEST(Interruption, StopsSmoothingDuringFacetPass) {
     };
   });
   EXPECT_THROW(account->run(source.get_token(), [&] { smooth_normals(mesh, 30, places); }), Cancelled);
-  EXPECT_LT(taken_after, kOfIndices) << "the exception alone may take some";
+  EXPECT_LT(taken_after, kOfIndices) << "only the exception may allocate memory";
 }
 
 TEST(Interruption, StopsBuildOfEveryAccelerator) {
@@ -93,7 +93,7 @@ TEST(Interruption, StopsBuildOfEveryAccelerator) {
     })) << type.name;
 }
 
-// An interrupted build is repeated by the next caller.
+// The next caller repeats an interrupted build.
 TEST(Interruption, LeavesNoPartialBuild) {
   const PreparedScene scene(load_scene(kScene));
   std::stop_source source;
@@ -117,7 +117,8 @@ TEST(Interruption, YieldsWhileLoading) {
   EXPECT_GT(turn.asked, 0);
 }
 
-// A thread that holds the scene's lock must not yield, since waiting threads may hold what the builder needs.
+// A thread that holds the scene's lock must not yield its slot. It could not get a slot back while threads
+// that wait for this lock have all slots.
 TEST(Interruption, NeverYieldsWhileSceneIsLocked) {
   const PreparedScene scene(load_scene(kScene));
   CountedTurn turn;

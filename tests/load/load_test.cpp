@@ -16,8 +16,8 @@ namespace {
 
 std::string problem_of_object(const char* object) { return first_problem(scene_of(object)); }
 
-// Returns the first problem of the scene as text, with `what` replaced by `by`. A JSON tree cannot hold some
-// of these values.
+// Replaces `what` by `by` in the text of a scene and returns the first problem of the scene. A JSON tree
+// cannot represent some of these values.
 std::string problem_of_text(const char* what, const char* by) {
   std::string text = scene_of("[{'type': 'sphere', 'center': [0.125, 0, 0], 'radius': 0.375}]").dump();
   text.replace(text.find(what), std::string_view(what).size(), by);
@@ -52,8 +52,8 @@ TEST(Load, RejectsInvalidNumbersAtTheirPath) {
   EXPECT_NE(first_problem_in_text(""), "accepted");
 }
 
-// Reflectances and filters are between 0 and 1: no surface scatters a negative share, and no medium amplifies
-// light.
+// Reflectances and filters are between 0 and 1: no surface reflects a negative fraction, and no medium
+// amplifies light.
 TEST(Load, RejectsReflectancesOutsideUnitInterval) {
   const auto problem = [](const char* material) {
     Json scene = scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]");
@@ -124,7 +124,7 @@ TEST(Load, RequiresObjectOrInstance) {
 TEST(Load, CollectsFactsForPlanning) {
   const auto scene = load(scene_of(R"([{'type': 'plane', 'point': [0, -1e6, 0], 'normal': [0, 1, 0]},
       {'type': 'sphere', 'center': [100, 0, 0], 'radius': 2}, {'type': 'sphere', 'center': [0, 0, 0], 'radius': 0.5}])"));
-  EXPECT_EQ(scene->facts.magnitude.value, 1e6) << "the point that places a plane counts";
+  EXPECT_EQ(scene->facts.magnitude.value, 1e6) << "includes the point of a plane";
   EXPECT_EQ(scene->facts.magnitude.where, "/objects/0");
   EXPECT_NEAR(scene->facts.smallest_feature.value, std::sqrt(3.0), 1e-15);
   EXPECT_EQ(scene->facts.smallest_feature.where, "/objects/2");

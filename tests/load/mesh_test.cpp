@@ -139,7 +139,7 @@ TEST(AssetFiles, RejectsTotalVerticesAboveLimit) {
     models["models"][name]["objects"] = {{{"type", "mesh"}, {"file", "a"}, {"material", "white"}}};
   try {
     load_scene(models.dump(), Dots());
-    FAIL() << "models have them together, too";
+    FAIL() << "the limit applies to the sum over all models";
   } catch (const InputError& error) {
     EXPECT_EQ(error.problems().front().pointer, "/models/c/objects/0");
   }
@@ -173,7 +173,7 @@ TEST(AssetFiles, RejectsSmoothingAboveTriangleLimitPerVertex) {
   EXPECT_EQ(first_problem(fan(33'000)), "/objects/0/crease_degrees");
   mesh["motion"] = {{{"time", 0}}, {{"time", 1}}};
   EXPECT_EQ(first_problem(fan(9'000)), "/objects/0/crease_degrees")
-      << "what moves is smoothed again and again";
+      << "each frame smooths moving meshes again";
 }
 
 }  // namespace

@@ -94,7 +94,7 @@ TEST(LoadMotion, RejectsKeyframeFilesOfOtherTopology) {
       "/objects/0/motion/1");
 }
 
-// Source of one mesh of 100,000 vertices, which counts its reads.
+// Asset source that returns a mesh of 100,000 vertices for every name, and counts the reads.
 class LargeMeshSource final : public AssetSource {
  public:
   mutable int read = 0;
@@ -120,7 +120,7 @@ TEST(LoadMotion, CountsKeyframesBeforeAllocation) {
               std::string::npos);
     EXPECT_EQ(error.problems().size(), 1u);
   }
-  EXPECT_EQ(heavy.read, 1) << "each file once";
+  EXPECT_EQ(heavy.read, 1) << "each file is read once";
 }
 
 TEST(LoadMotion, SharesEqualDataAmongKeyframes) {
@@ -163,7 +163,7 @@ TEST(LoadMotion, InterpolatesBetweenKeyframes) {
   EXPECT_EQ(box(99), Vec3d(3, 9, 0));
 }
 
-// Resting meshes before and after a moving one keep their triangles.
+// Static meshes before and after a moving mesh keep their triangles.
 TEST(LoadMotion, LeavesStaticMeshesUnchanged) {
   Json scene = mesh_with("[{'time': 0}, {'time': 1, 'positions': [[0, 0, 0], [5, 0, 0], [0, 1, 0]]}]");
   const Json resting = json(

@@ -16,8 +16,8 @@ Probe<double> clay(double reflectance, double roughness) {
   return Probe<double>(Json{{"type", "oren-nayar"}, {"reflectance", reflectance}, {"roughness", roughness}});
 }
 
-// Returns the directional albedo, by the midpoint rule over half the azimuths and over r, with cosine 1 -
-// r^2.
+// Returns the directional albedo. Integrates by the midpoint rule over half the azimuths and over r in [0,
+// 1], where the cosine is 1 - r^2.
 double albedo(const Probe<double>& material, double cosine) {
   constexpr int kSteps = 256;
   std::vector<Case> cases;
@@ -61,7 +61,7 @@ TEST(OrenNayarMaterial, ReflectsAllLightIfWhite) {
 }
 
 // Single scattering of reflectance rho has the albedo rho E, E = A (1 + roughness G / pi). Multiple
-// scattering adds rho_ms (1 - E). G is in the form of the paper.
+// scattering adds rho_ms (1 - E). G is written as in the paper.
 TEST(OrenNayarMaterial, MatchesAnalyticAlbedo) {
   constexpr double kPi = std::numbers::pi;
   const double a = 1 / (1 + (0.5 - 2 / (3 * kPi)) * 0.8);
@@ -74,7 +74,8 @@ TEST(OrenNayarMaterial, MatchesAnalyticAlbedo) {
   }
 }
 
-// Toward the light the surface is flatter than Lambert's: the limb is nearly as bright as the centre.
+// Seen from the light, a rough sphere looks flatter than a Lambertian one: the limb is nearly as bright as
+// the centre.
 TEST(OrenNayarMaterial, ScattersBackTowardLight) {
   const auto back = [](double cosine) {
     Case c;

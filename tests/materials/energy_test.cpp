@@ -71,7 +71,7 @@ TEST(Glass, EqualsRefractiveIfSmooth) {
   }
 }
 
-// After two metres in the medium, a channel is down to the square of its one-metre transmittance.
+// Over two metres, the transmittance of each channel is the square of that over one metre.
 TEST(Glass, FiltersLightInsideIfRough) {
   const Probe<double> glass("{'type': 'glass', 'roughness': 0.5, 'filter': [0.9, 0.5, 0.1]}");
   const Probe<double> clear("{'type': 'glass', 'roughness': 0.5}");
@@ -101,8 +101,7 @@ TEST(Plastic, ReflectsAllLightIfWhite) {
     }
 }
 
-// If the interpolated normal faces away from the viewer, the coat reflects by the flipped normal, in
-// evaluation as in sampling.
+// If the interpolated normal faces away from the viewer, the reflectance of the coat uses the flipped normal.
 TEST(Plastic, FlipsBackfacingNormalOfCoat) {
   const Probe<double> plastic("{'type': 'plastic', 'roughness': 0}");
   Case away = seen_at(0.9);
@@ -111,7 +110,7 @@ TEST(Plastic, FlipsBackfacingNormalOfCoat) {
   EXPECT_EQ(plastic.specular(away).reflectance, plastic.specular(flat).reflectance);
 }
 
-TEST(MetallicRoughness, StaysWithinLimitIfStrict) {
+TEST(MetallicRoughness, KeepsAlbedoBelowLimitIfStrict) {
   for (const double roughness : {0.3, 0.5, 1.0}) {
     const Json strict{
         {"type", "metallic-roughness"}, {"base_color", 1}, {"roughness", roughness}, {"strict", true}};
@@ -122,7 +121,7 @@ TEST(MetallicRoughness, StaysWithinLimitIfStrict) {
   }
 }
 
-TEST(Ambient, StaysWithinLimit) {
+TEST(Ambient, StaysBelowMaterialLimit) {
   std::vector<Json> materials;
   for (const char* type : {"rough", "lambert", "oren-nayar", "translucent"})
     materials.push_back({{"type", type}});
@@ -158,7 +157,7 @@ TEST(Plastic, MatchesClosedFormUnderSmoothCoat) {
   EXPECT_NEAR(plastic.specular(seen_at(1)).reflectance.x, kHead, 1e-12);
 }
 
-TEST(MetallicRoughness, CreatesDocumentedEnergyIfStrict) {
+TEST(MetallicRoughness, HasDocumentedAlbedoIfStrict) {
   covers("light-31");
   const Probe<double> strict(
       "{'type': 'metallic-roughness', 'base_color': 1, 'roughness': 0.5, 'strict': true}");
@@ -178,13 +177,13 @@ TEST(MetallicRoughness, CreatesNoEnergy) {
       for (const double cosine : kCosines) {
         const double found = mean_weight(white, seen_at(cosine)).x;
         EXPECT_LT(found, 1 + 2e-3) << roughness << " " << metallic << " " << cosine;
-        if (metallic == 0.5) continue;  // the metal absorbs its share
+        if (metallic == 0.5) continue;  // the metallic half absorbs some light
         EXPECT_GT(found, 1 - 4e-3) << roughness << " " << metallic << " " << cosine;
       }
     }
 }
 
-// Compares sampling with sums of evaluate() over the hemisphere.
+// Compares the mean weight of samples with the integral of evaluate() over the hemisphere.
 TEST(CookTorrance, MatchesQuadratureOfFormula) {
   const Probe<double> gold(
       "{'type': 'cook-torrance', 'n': [0.156, 0.424, 1.383], 'k': [3.602, 2.472, 1.915], 'slope': 0.3}");
@@ -207,7 +206,7 @@ TEST(CookTorrance, MatchesQuadratureOfFormula) {
   }
 }
 
-TEST(Translucent, SplitsLightBetweenItsSides) {
+TEST(Translucent, SplitsLightBetweenReflectionAndTransmission) {
   const Probe<double> paper("{'type': 'translucent', 'reflectance': [0.4, 0.3, 0.2], 'transmittance': 0.5}");
   Vec3d back, on;
   constexpr int kDraws = 200'000;

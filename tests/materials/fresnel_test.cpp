@@ -68,8 +68,8 @@ TEST(Fresnel, MatchesCatalogueValues) {
     EXPECT_NEAR(reflectance(glass(1, "exact"), degrees), 0, 1e-15);
 }
 
-// Schlick's approximation has the stated error, no more and no less, from both sides of the surface. Its
-// cosine is that of the optically thinner side.
+// Compares the largest error of Schlick's approximation with the documented value, on both sides of the
+// surface. The approximation uses the cosine on the optically thinner side.
 TEST(Fresnel, HasDocumentedSchlickError) {
   covers("D6 D7");
   const auto worst = [](const Probe<double>& schlick, const Probe<double>& exact, double side) {
@@ -91,9 +91,10 @@ TEST(Fresnel, HasDocumentedSchlickError) {
   }
   EXPECT_NEAR(worst(metal(1.10, 6.79, "schlick"), metal(1.10, 6.79, "exact"), 1), .10, 0.006) << "aluminium";
   EXPECT_NEAR(worst(metal(3.2, 3.3, "schlick"), metal(3.2, 3.3, "exact"), 1), .20, 0.006) << "chromium";
-  EXPECT_NEAR(reflectance(glass(1, "schlick"), 89.9L), 1, 0.01) << "with n = 1 grazing rays are all wrong";
+  EXPECT_NEAR(reflectance(glass(1, "schlick"), 89.9L), 1, 0.01)
+      << "with n = 1, the approximation reflects grazing rays";
   EXPECT_LE(std::abs(reflectance(glass(1.5, "schlick"), 41.8, -1) - .8908), .06)
-      << "the inside cosine would give .0410";
+      << "with the cosine inside the glass, the reflectance would be .0410";
 }
 
 TEST(Fresnel, MatchesTextbookForConductors) {

@@ -25,8 +25,8 @@ Probe<double> perfect_mirror(double alpha) {
       Json{{"type", "metal"}, {"n", {0, 0, 0}}, {"k", {1, 1, 1}}, {"roughness", std::sqrt(alpha)}});
 }
 
-// Returns the single-scattering albedo, by quadrature over half vectors of density D cos. The squared tangent
-// of their angle is alpha^2 u / (1 - u).
+// Returns the single-scattering albedo, integrated over half vectors of density D cos. The squared tangent of
+// the half vector's angle is alpha^2 u / (1 - u).
 double single_albedo(double alpha, double cosine) {
   constexpr int kSteps = 1000;
   const Ggx<double> facets{alpha};
@@ -55,7 +55,7 @@ TEST(Microfacets, MatchesSingleScatteringAlbedo) {
   EXPECT_NEAR(single_albedo(0.1, 1), .98831, 1e-4);
 }
 
-// The density of normals projects to one unit of area.
+// The integral of D cos over the hemisphere is 1.
 TEST(Microfacets, ProjectsToUnitArea) {
   constexpr int kSteps = 4000;
   for (const double alpha : {0.05, 0.3, 1.0}) {
@@ -110,8 +110,8 @@ TEST(Metal, AddsMultipleScattering) {
   EXPECT_NEAR(0.9 * single_albedo(1, 1) + passed_on, .7668, 2e-3);
 }
 
-// Gold of roughness 1. Single scattering reflects F, and the rest adds the lobe of Kulla and Conty with the
-// mean of F. Both are summed here independently.
+// The albedo of gold with roughness 1 is the sum of single scattering with F and the lobe of Kulla and Conty
+// with the mean of F. The test integrates both independently of the material.
 TEST(Metal, ColoursMultipleScattering) {
   const Probe<double> gold(
       "{'type': 'metal', 'n': [0.143, 0.375, 1.442], 'k': [3.983, 2.386, 1.603], "
@@ -125,8 +125,8 @@ TEST(Metal, ColoursMultipleScattering) {
     for (int i = 0; i < kSteps; ++i) {
       const double u = (i + 0.5) / kSteps;
       mean_f += fresnel_conductor(n, k, std::sqrt(u)) / kSteps;
-      // alpha 1, normal view: half vectors uniform in cos^2, G2 / G1 = 2 z / (z + 1) with z the light's
-      // cosine.
+      // alpha 1, normal view: half vectors are uniform in cos^2 and G2 / G1 = 2 z / (z + 1) with z the
+      // light's cosine.
       const double c2 = 1 - u, z = 2 * c2 - 1;
       if (z > 0) once += fresnel_conductor(n, k, std::sqrt(c2)) * 2 * z / (z + 1) / kSteps;
     }

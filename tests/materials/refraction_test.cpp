@@ -96,7 +96,7 @@ TEST(Refraction, MatchesDiffuseInternalReflectance) {
   constexpr int kSteps = 200'000;
   std::vector<Case> cases(kSteps);
   for (int i = 0; i < kSteps; ++i) {
-    const double sine2 = (i + 0.5) / kSteps;  // equal shares of cosine-weighted light
+    const double sine2 = (i + 0.5) / kSteps;  // equal fractions of cosine-weighted light
     Case& c = cases[static_cast<std::size_t>(i)];
     c.side = -1;
     c.direction = Vec3d(std::sqrt(sine2), 0, -std::sqrt(1 - sine2));

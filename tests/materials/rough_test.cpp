@@ -47,15 +47,15 @@ TEST(Rough, MultipliesCoefficientsByColours) {
   EXPECT_NEAR(got.y, 0.1 + 0.4, 1e-15);
   EXPECT_NEAR(got.z, 0.6 + 0.2, 1e-15);
   EXPECT_EQ(paint.ambient(), Vec3d(0.5, 0.25, 1));
-  EXPECT_EQ(Probe<double>("{'type': 'rough', 'kd': 0.25}").ambient(), Vec3d(0.25))
-      << "ka is kd where left out";
+  EXPECT_EQ(Probe<double>("{'type': 'rough', 'kd': 0.25}").ambient(), Vec3d(0.25)) << "ka defaults to kd";
 }
 
 TEST(Highlight, EqualsPowerOfCosine) {
   const Probe<double> phong(kPhong), blinn(kBlinn);
   for (double light = -80; light <= 80; light += 20)
     for (double viewer = -80; viewer <= 80; viewer += 10) {
-      const double off = (light + viewer) * std::numbers::pi / 180;  // mirrored direction against viewer
+      // Angle between mirrored direction and viewer.
+      const double off = (light + viewer) * std::numbers::pi / 180;
       EXPECT_NEAR(phong.reflected(lit_from(light, viewer)).x, std::pow(std::max(0.0, std::cos(off)), 50),
                   1e-12);
       EXPECT_NEAR(blinn.reflected(lit_from(light, viewer)).x, std::pow(std::cos(off / 2), 50), 1e-12);
@@ -69,19 +69,20 @@ TEST(Highlight, IsFiniteInDegenerateCases) {
         Json{{"type", "rough"}, {"kd", 0}, {"ks", 1}, {"shininess", shininess}, {"shading", shading}});
   };
   for (const char* shading : {"phong", "blinn-phong"}) {
-    // A negative cosine to a fractional power; an exponent of 0 behind the surface and in front of it.
+    // A negative cosine is raised to a fractional power, and an exponent is 0 behind and in front of the
+    // surface.
     EXPECT_EQ(of("phong", 2.5).reflected(lit_from(50, 45)).x, 0);
     EXPECT_EQ(of(shading, 0).reflected(lit_from(120, 0)).x, 0);
     EXPECT_EQ(of(shading, 0).reflected(lit_from(30, 60)).x, 1);
-    // Light from below the horizon, seen from the other side: no highlight comes from under the surface.
+    // Light arrives from below the surface, and the viewer is on the other side.
     Case under;
     under.normal = under.geometric = Vec3d(0, 1, 0);
     under.light = safe_normalize(Vec3d(.8, -.01, 0));
     under.direction = -safe_normalize(Vec3d(-1, .1, 0));
     EXPECT_EQ(of(shading, 50).reflected(under).x, 0);
-    // Seen from below an interpolated normal and lit from above: no highlight either.
+    // The viewer is below the interpolated normal's horizon, and the light is above.
     EXPECT_EQ(of(shading, 2).reflected(lit_from(10, 95)).x, 0) << shading;
-    // Light exactly opposite to the viewer: the half vector has no direction.
+    // If light and viewer are exactly opposite, the half vector is zero.
     for (const double degrees : {-90.0, 0.0, 90.0}) {
       Case opposite = lit_from(degrees, 0);
       opposite.direction = opposite.light;
@@ -94,8 +95,8 @@ TEST(Highlight, IsFiniteInDegenerateCases) {
   }
 }
 
-// Half the height is reached 9.52 degrees from the mirrored direction by Phong and 19.04 by Blinn-Phong. With
-// the exponent 4.02 n the two agree to 0.002.
+// The highlight falls to half its peak at 9.52 degrees from the mirrored direction for Phong, and at 19.04
+// for Blinn-Phong. With exponent 4.02 n, Blinn-Phong agrees with Phong to 0.002.
 TEST(Highlight, MatchesPhongAtFourfoldBlinnExponent) {
   covers("B7");
   const Probe<double> phong(kPhong), blinn(kBlinn);
@@ -107,7 +108,7 @@ TEST(Highlight, MatchesPhongAtFourfoldBlinnExponent) {
     largest = std::max(
         largest, std::abs(phong.reflected(lit_from(0, viewer)).x - matched.reflected(lit_from(0, viewer)).x));
   EXPECT_LE(largest, 0.002);
-  EXPECT_GE(largest, 0.001) << "4.02 is an approximation";
+  EXPECT_GE(largest, 0.001) << "the factor 4.02 is an approximation";
 }
 
 // Dot products of normalized float vectors may exceed 1. No power and no root may become NaN.
@@ -148,7 +149,7 @@ TEST(Rough, AgreesInFloatAndDouble) {
     Probe<float>::Case f;
     f.light = Vec3f(c.light);
     f.direction = Vec3f(c.direction);
-    // 100 ulp for the power of 100, and those of the vectors.
+    // 100 ulp for the exponent 100, and the rounding errors of the vectors.
     EXPECT_NEAR(static_cast<double>(single.reflected(f).x), exact.reflected(c).x, 3e-5);
   }
 }

@@ -10,7 +10,7 @@
 namespace orrery::test {
 namespace {
 
-// Batch of samples at one surface point, seen along one ray.
+// Batch of samples at one surface point for one view direction.
 struct SampleBatch {
   RayBatch<double> rays;
   HitBatch<double> hits;
@@ -49,9 +49,9 @@ MaterialKernelPtr<double> kernel_of(const char* material) {
 
 const Vec3d kSlanted = safe_normalize(Vec3d(0.6, 0.1, -0.7));
 
-// The mean of the weights is the albedo, here by quadrature over the hemisphere (pi_bsdf_cos is pi times the
-// share). A tolerance of 1.5 % is four standard deviations of the highlight.
-TEST(RoughSampling, AveragesWeightToAlbedo) {
+// The mean weight equals the albedo, which is integrated over the hemisphere. pi_bsdf_cos is pi times the
+// BSDF times the cosine. The tolerance of 1.5 % is four standard deviations for the highlight.
+TEST(RoughSampling, MeanWeightEqualsAlbedo) {
   const auto kernel = kernel_of("{'type': 'rough', 'kd': [0.5, 0.2, 0], 'ks': 0.4, 'shininess': 8}");
   const auto drawn = std::make_unique<SampleBatch>(kSlanted, 1.0);
   Vec3d sum;
@@ -98,10 +98,11 @@ TEST(RoughSampling, MatchesDensityOfEvaluate) {
     ASSERT_NEAR(drawn->out.pdf[i], drawn->pdf[i], 1e-15);
     mean_cosine += drawn->out.direction[i].z / kBatch;
   }
-  EXPECT_NEAR(mean_cosine, 2.0 / 3, 0.01) << "in proportion to the cosine";
+  EXPECT_NEAR(mean_cosine, 2.0 / 3, 0.01) << "mean cosine of a density proportional to the cosine";
 }
 
-// Glass without a filter loses no light: each sample has weight 1, and the mirrored share is Fresnel's.
+// Glass without a filter absorbs no light, so each sample has weight 1. The fraction of mirrored samples
+// equals the Fresnel reflectance.
 TEST(RefractiveSampling, ReflectsInProportionToReflectance) {
   const auto kernel = kernel_of("{'type': 'refractive', 'ior': 1.5, 'fresnel': 'exact'}");
   const auto drawn = std::make_unique<SampleBatch>(safe_normalize(Vec3d(1, 0, -1)), 1.0);

@@ -58,8 +58,8 @@ Case seen_from(const Vec3d& viewer, double side = 1) {
   return c;
 }
 
-// Both hemispheres in cells. The cosine is 1 - r^2, the azimuth is in turns, and each cell has a grid of
-// points.
+// Cells over both hemispheres: rings of equal width in r, where the cosine is 1 - r^2, and sectors of
+// azimuth. Each cell has a grid of kPointsAcross x kPointsAround points for integration.
 constexpr int kRings = 48, kSectors = 64, kPointsAcross = 8, kPointsAround = 20;
 struct Cells {
   std::vector<double> mass = std::vector<double>(2 * kRings * kSectors);
@@ -74,8 +74,8 @@ struct Cells {
   double sum() const { return std::accumulate(mass.begin(), mass.end(), 0.0); }
 };
 
-// Returns the integral of the material's density over each cell. Rougher glass has a density with a sharp
-// edge at upright facets, which the grid of points does not resolve.
+// Returns the integral of the material's density over each cell. The grid does not resolve the sharp edge
+// that the density of very rough glass has at upright facets.
 Cells cells_of(const Probe<double>& material, const Case& point, Lobes lobes = Lobes::all) {
   constexpr int kRows = kRings * kPointsAcross, kColumns = kSectors * kPointsAround;
   std::vector<Case> cases;
@@ -97,8 +97,8 @@ Cells cells_of(const Probe<double>& material, const Case& point, Lobes lobes = L
   return cells;
 }
 
-// Returns the standard deviations of chi-square above its mean (Wilson and Hilferty). Cells with an expected
-// count below 5 are merged into one cell, together with absorbed samples.
+// Returns by how many standard deviations chi-square exceeds its mean (Wilson and Hilferty). Absorbed samples
+// and cells with an expected count below 5 are merged into one cell.
 double chi_square_deviations(const Cells& expected, const std::vector<Probe<double>::Sampled>& drawn) {
   std::vector<double> count(expected.mass.size());
   double lost = 0;
@@ -126,8 +126,8 @@ double chi_square_deviations(const Cells& expected, const std::vector<Probe<doub
 
 class Scattering : public testing::TestWithParam<Material> {};
 
-// Sidak: with 85 tests, one in a hundred runs would have a deviation above 3.68. The density integrates to
-// the share of samples that leave.
+// With 85 tests, one run in a hundred would exceed 3.68 standard deviations (Sidak). The integral of the
+// density equals the fraction of samples that are not absorbed.
 TEST_P(Scattering, SamplesInProportionToDensity) {
   covers("light-24 light-25");
   const Probe<double> material(GetParam().text);
@@ -143,7 +143,7 @@ TEST_P(Scattering, SamplesInProportionToDensity) {
   }
 }
 
-// Radiance is divided by the squared index: f / n^2 of the light's side is the same in both directions.
+// For radiance, f / n^2 is reciprocal, where n is the refractive index on the side of the light.
 TEST_P(Scattering, IsReciprocal) {
   covers("light-26");
   const Probe<double> material(GetParam().text);
@@ -196,7 +196,7 @@ TEST_P(Scattering, WeightsSamplesByEvaluation) {
   }
 }
 
-// Float rounding shifts directions by 1e-7 and the narrowest lobe is 0.09 wide; the tolerances allow for
+// Float rounding changes directions by 1e-7, and the narrowest lobe is 0.09 wide. The tolerances allow for
 // this.
 TEST_P(Scattering, AgreesInFloatAndDouble) {
   const Probe<double> exact(GetParam().text);
@@ -225,7 +225,7 @@ TEST_P(Scattering, AgreesInFloatAndDouble) {
   }
 }
 
-// Interpolated normals may face away from the viewer, and the light may be behind either surface.
+// In some cases the interpolated normal faces away from the viewer, or the light is behind the surface.
 template <class T>
 void million_points(const Material& tested) {
   const Probe<T> material(tested.text);
@@ -266,7 +266,7 @@ TEST_P(Scattering, StaysFiniteForMillionPoints) {
 INSTANTIATE_TEST_SUITE_P(Materials, Scattering, testing::ValuesIn(kMaterials),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 
-// Paints, whose highlight has no physical bound.
+// Paints. Their highlights are not limited by energy conservation.
 const Material kPaints[] = {
     {"Paint", "{'type': 'rough', 'kd': [0.5, 0.2, 0], 'ks': 0.5, 'shininess': 30}"},
     {"PhongPaint",
@@ -315,7 +315,7 @@ TEST_P(MaterialLobes, SumsToWholeMaterial) {
   EXPECT_NEAR(length(ambient - material_.ambient()), 0, 1e-14);
 }
 
-// Repeats the test of Scattering for single lobe classes, and for all lobes of paints. 48 tests.
+// Repeats the test of Scattering for single lobe classes, and for all lobes of paints (48 tests).
 TEST_P(MaterialLobes, SamplesInProportionToDensity) {
   covers("light-24");
   constexpr int kDraws = 200'000;

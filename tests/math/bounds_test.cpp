@@ -42,8 +42,8 @@ TYPED_TEST(SlabTest, FindsRayMissedByTextbookMethod) {
   EXPECT_TRUE(b.enters_it());
 }
 
-// A ray in the plane of a face gives 0 * infinity. Four places touch the unit cube, two do not, for each axis
-// of the direction, both of its signs and both signs of its zeros.
+// Rays in the plane of a face compute 0 * infinity. Four of these places touch the unit cube, two do not.
+// Each is tested for every axis, both signs of the direction and both signs of its zeros.
 TYPED_TEST(SlabTest, AcceptsOnlyTouchingRaysInFacePlanes) {
   using T = TypeParam;
   test::covers("A28");
@@ -107,9 +107,9 @@ TYPED_TEST(SlabTest, TestsOnlyBetweenOriginAndEnd) {
   const BoxRay<T> ray(Vec3<T>(T(0)), up);
   EXPECT_TRUE(enters(ray, lo, hi, T(1)));
   EXPECT_FALSE(enters(ray, lo, hi, T(0.99)));
-  EXPECT_FALSE(enters(ray, lo, hi, T(-1))) << "an inactive ray";
+  EXPECT_FALSE(enters(ray, lo, hi, T(-1))) << "inactive ray";
   EXPECT_FALSE(enters(BoxRay<T>(Vec3<T>(T(0)), -up), lo, hi, T(100)));
-  EXPECT_TRUE(enters(BoxRay<T>(Vec3<T>(T(1.5)), up), lo, hi, T(0.1))) << "starts inside";
+  EXPECT_TRUE(enters(BoxRay<T>(Vec3<T>(T(1.5)), up), lo, hi, T(0.1))) << "origin inside the box";
 }
 
 TEST(Bounds, CoversFloatRoundingIfPadded) {
@@ -125,7 +125,7 @@ TEST(Bounds, CoversFloatRoundingIfPadded) {
   }
 }
 
-// An empty box has inverted sides at infinity.
+// The lower bounds of an empty box are +infinity, the upper bounds -infinity.
 TEST(Bounds, IgnoresEmptyBox) {
   Boundsd b = Boundsd::of({{-1, 2, 3}, {4, 5, 6}});
   b.include(Boundsd());

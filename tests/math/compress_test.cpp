@@ -32,7 +32,7 @@ TYPED_TEST(Compress, KeepsMaskedLanesInOrder) {
       if (bits >> i & 1u) {
         EXPECT_EQ(to[n++], static_cast<T>(100 + i)) << "mask " << bits;
       }
-    for (std::size_t i = V::size(); i < to.size(); ++i) EXPECT_EQ(to[i], T(0)) << "wrote past a register";
+    for (std::size_t i = V::size(); i < to.size(); ++i) EXPECT_EQ(to[i], T(0)) << "wrote beyond one register";
   }
 }
 

@@ -14,20 +14,20 @@
 namespace orrery {
 namespace {
 
-// Returns the share of evenly spread points of the cube's face z = 0 from which a ray along `d` leaves by the
+// Returns the fraction of the points on a unit cube's face z = 0 from which a ray along `d` exits through the
 // opposite face.
 double share_opposite(const Vec3d& d) {
   return std::max(0.0, 1 - std::abs(d.x / d.z)) * std::max(0.0, 1 - std::abs(d.y / d.z));
 }
-// Returns the same share for the side face towards which d.x points. A ray reaches the side if its way there
-// is at most `reach`, the way along x to the top, and shorter than along y.
+// Returns the fraction that exits through the side face that d.x points to. `reach` is the distance along x
+// at which a ray reaches the opposite face, at most 1. `turn` is the distance along x per unit along y.
 double share_of_side(double dx, double dy, double dz) {
   const double reach = std::min(1.0, std::abs(dx / dz)), turn = std::abs(dx / dy);
   return reach < turn ? reach - reach * reach / (2 * turn) : turn / 2;
 }
 
-// Returns the shares of cosine-distributed directions, from evenly spread points of a face, that reach each
-// face. A face's index is 2 axis + (1 upward).
+// Returns the fraction of cosine-distributed rays from uniform points of face `from` that reach each face.
+// Face 2 axis + 1 is the upper face of an axis, 2 axis the lower one.
 std::array<double, 6> form_factors(std::size_t from) {
   constexpr std::uint32_t kStreams = 16, kSamples = 1 << 16;
   const std::size_t z = from / 2, x = (z + 1) % 3, y = (z + 2) % 3;
@@ -47,7 +47,7 @@ std::array<double, 6> form_factors(std::size_t from) {
 }
 
 // Form factor of opposite faces of a cube (Howell, "A Catalog of Radiation Heat Transfer Configuration
-// Factors", C-11), and the remainder for the four others.
+// Factors", C-11). The four side faces share the remainder equally.
 TEST(Hemisphere, MatchesFormFactorsOfCube) {
   test::covers("light-16");
   const double root2 = std::numbers::sqrt2, pi = std::numbers::pi;

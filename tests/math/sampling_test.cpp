@@ -28,7 +28,7 @@ struct Sequence {
 
 class Stratification : public testing::TestWithParam<Sequence> {};
 
-// Cuts the pixel into n equal boxes in every way, n = 2^k: 1 x n, 2 x n/2, ... n x 1.
+// Divides the pixel into n = 2^k equal boxes in every way: 1 x n, 2 x n/2, ... n x 1.
 TEST_P(Stratification, PutsOneSampleIntoEachElementaryInterval) {
   const int count = GetParam().count;
   for (std::uint32_t stream = 0; stream < (count > 64 ? 4u : 200u); ++stream) {
@@ -46,8 +46,9 @@ TEST_P(Stratification, PutsOneSampleIntoEachElementaryInterval) {
   }
 }
 
-// Aligned blocks of the sequence are also stratified: an image of 4 samples continued to 16 stays stratified.
-TEST_P(Stratification, HoldsForEveryAlignedBlock) {
+// Aligned blocks of the sequence are also stratified: a render of 4 samples per pixel that continues to 16
+// stays stratified.
+TEST_P(Stratification, StratifiesEveryAlignedBlock) {
   const int count = GetParam().count;
   const int side = static_cast<int>(std::lround(std::sqrt(count)));
   for (int block = 0; block < 16; ++block) {
@@ -67,8 +68,8 @@ INSTANTIATE_TEST_SUITE_P(Sizes, Stratification,
                                          Sequence{16, shuffled}, Sequence{64, shuffled},
                                          Sequence{4096, shuffled}));
 
-// Three dimensions of one stream. In every aligned block of 2^m samples the third alone has one number in
-// each interval. Together, two points are in each box of volume 2^(1-m).
+// In every aligned block of 64 samples, the third dimension has one sample in each interval of length 1/64.
+// Jointly with the other two, each elementary box of volume 1/32 contains two samples.
 TEST(Sampling, StratifiesThirdDimensionJointly) {
   test::covers("light-1");
   constexpr std::uint32_t kCount = 64;
@@ -117,8 +118,7 @@ TEST(Sampling, MixesAndScramblesBijectively) {
   EXPECT_EQ(reversed.size(), 65536u);
 }
 
-// Each lane equals the scalar result.
-TEST(Sampling, MatchesScalarsInLanes) {
+TEST(Sampling, MatchesScalarResultsInLanes) {
   for (std::uint32_t sample = 0; sample < 300; ++sample) {
     const stdx::native_simd<std::uint32_t> streams(
         [&](std::uint32_t lane) { return mix_bits(1000 * sample + lane); });
@@ -171,7 +171,7 @@ TEST(Sampling, ConvergesAsPower3Over4AtEdges) {
   EXPECT_GE(slope, -0.80);
 }
 
-// The correlation between samples of neighbouring streams stays below 4 standard deviations.
+// The correlation between samples of neighbouring streams stays within 4 standard deviations of 0.
 TEST(Sampling, KeepsStreamsIndependent) {
   constexpr int kPairs = 100'000;
   double sum = 0;

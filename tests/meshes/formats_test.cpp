@@ -53,12 +53,12 @@ TEST(MeshFile, AppliesLimitsInEveryFormat) {
   }
 }
 
-// A truncated file is rejected, or read up to the cut.
 TEST(MeshFile, RejectsOrReadsTruncatedFilesUpToCut) {
   const std::vector<Corners> whole = corners_of(cube());
   for (const File& file : cubes())
     for (std::size_t size = 0; size < file.bytes.size(); ++size) {
-      const std::string bytes = file.bytes.substr(0, size);  // exact allocation, so that overreads are caught
+      // Allocation of exact size, so that sanitizers report overreads.
+      const std::string bytes = file.bytes.substr(0, size);
       if (problem(bytes) != "accepted") continue;
       const std::vector<Corners> read = corners_of(read_mesh(bytes));
       EXPECT_TRUE(file.format == MeshFormat::obj || read.size() == whole.size()) << file.name << size;

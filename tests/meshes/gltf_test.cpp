@@ -14,7 +14,7 @@ using Triangle = std::array<std::uint32_t, 3>;
 
 const std::vector<Vec3d> kTriangle = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
 
-// Returns kTriangle under `nodes`.
+// Returns the mesh of a document with kTriangle as mesh 0 and the members in `nodes`.
 TriangleMesh placed(const std::string& nodes) {
   Gltf gltf;
   gltf.positions(kTriangle);
@@ -129,7 +129,7 @@ TEST(Gltf, ReadsInterleavedNormalizedAttributes) {
       R"("nodes":[{"mesh":0,"extras":{"a":[[[]]]}}]})";
   const TriangleMesh mesh = read_mesh(text);
   EXPECT_EQ(mesh.positions, kTriangle);
-  EXPECT_EQ(mesh.uvs[2], (std::array<double, 2>{0.2, 0}));  // v from the top, flipped
+  EXPECT_EQ(mesh.uvs[2], (std::array<double, 2>{0.2, 0}));  // glTF counts v from the top, so it is flipped
 }
 
 TEST(Gltf, DropsAttributesMissingInSomePrimitives) {

@@ -82,7 +82,7 @@ TEST(Obj, ReportsLineOfErrors) {
   EXPECT_EQ(with("v 1 0 -inf"), "line 5: v must be a finite number (got \"-inf\")");
   EXPECT_EQ(with("v 1 0 1e999"), "line 5: v must be a finite number (got \"1e999\")");
   EXPECT_EQ(with("v 1 -2e12 0"),
-            "line 5: coordinates must be at most 1e+12 in magnitude (got (1, -2e+12, 0))");
+            "line 5: coordinates must be at most 1e+12 m in magnitude (got (1, -2e+12, 0))");
   EXPECT_EQ(with("v 1 0"), "line 5: v must be a finite number (got nothing)");
   EXPECT_EQ(with("vn 1 0 0x1"), "line 5: vn must be a finite number (got \"0x1\")");
   EXPECT_EQ(with("vt u"), "line 5: vt must be a finite number (got \"u\")");
@@ -94,7 +94,7 @@ TEST(Obj, ReportsLineOfErrors) {
             "line 5: v of a corner must be from 1 to 4 or -1 to -4 (got 4294967299)");
   EXPECT_EQ(with("f 1 2 99999999999999999999"),
             "line 5: v of a corner must be an integer (got \"99999999999999999999\")");
-  EXPECT_EQ(with("f 1/1 2 3"), "line 5: vt of a corner must be absent before the first vt (got 1)");
+  EXPECT_EQ(with("f 1/1 2 3"), "line 5: vt of a corner must refer to an earlier vt line (got 1)");
   EXPECT_EQ(with("f 1/1/1/1 2 3"), "line 5: corner must be position/uv/normal (got \"1/1/1/1\")");
   EXPECT_EQ(with("f \\\n1 2 x"), "line 6: v of a corner must be an integer (got \"x\")");
 }

@@ -5,7 +5,7 @@
 #include "tests/meshes/writers.h"
 #include "tests/support/random.h"
 
-// Compares mesh readers with those of other programs.
+// Compares the mesh readers with tinyobjloader and tinygltf.
 
 #if __has_include(<tiny_obj_loader.h>)
 #define TINYOBJLOADER_IMPLEMENTATION
@@ -46,7 +46,8 @@ std::string random_obj(Random& random) {
   return text;
 }
 
-// tinyobjloader rounds decimals to a few units in the last place only, hence the bound.
+// tinyobjloader parses decimals with errors of a few units in the last place, so coordinates need a
+// tolerance.
 TEST(MeshFile, MatchesTinyobjloader) {
   Random random(1);
   for (int round = 0; round < 20; ++round) {

@@ -18,7 +18,8 @@ const std::string kVertex = "element vertex 4\nproperty float x\nproperty float 
 const std::string kFace = "element face 1\nproperty list uchar int vertex_indices\n";
 const std::string kFour = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
 
-// Reads a mesh with coordinates, list lengths and indices of the scalar type `type`, in both byte orders.
+// Expects a mesh to be read whose coordinates, list lengths and indices have the scalar type `type`, in both
+// byte orders.
 template <class T>
 void reads_as(const std::string& type) {
   for (const std::endian order : {std::endian::little, std::endian::big}) {
@@ -119,27 +120,26 @@ TEST(Ply, ReportsLineOfHeaderErrors) {
   EXPECT_THAT(problem("ply\n"), HasSubstr("must be \"end_header\" (got the end of the file)"));
   EXPECT_THAT(problem("ply\nend_header\n"),
               HasSubstr("line 2: \"end_header\" must follow a line \"format\""));
-  EXPECT_THAT(ascii("elephant 3\n"),
-              HasSubstr("line 3: must be a keyword of a PLY header (got \"elephant\")"));
+  EXPECT_THAT(ascii("elephant 3\n"), HasSubstr("line 3: must be a PLY header keyword (got \"elephant\")"));
   EXPECT_THAT(ascii("element vertex -1\n"), HasSubstr("must be at least 0 (got -1)"));
   EXPECT_THAT(ascii("element vertex many\n"),
               HasSubstr("number of elements must be an integer (got \"many\")"));
   EXPECT_THAT(ascii("property float x\n"), HasSubstr("property must follow an element"));
   EXPECT_THAT(ascii("element vertex 1\nproperty half x\n"),
-              HasSubstr("line 4: must be a type from char to double (got \"half\")"));
+              HasSubstr("line 4: must be a PLY type such as int or float32 (got \"half\")"));
   EXPECT_THAT(ascii("element face 1\nproperty list float int vertex_index\n"),
               HasSubstr("length of a list must have an integer type"));
-  EXPECT_THAT(ascii(kFace), HasSubstr("must have one element \"vertex\" (got 0)"));
+  EXPECT_THAT(ascii(kFace), HasSubstr("must have exactly one element \"vertex\" (got 0)"));
   EXPECT_THAT(ascii("element vertex 0\nproperty float x\n" + kFace), HasSubstr("properties x, y and z"));
-  EXPECT_THAT(ascii(kVertex + kVertex), HasSubstr("must have one element \"vertex\" (got 2)"));
+  EXPECT_THAT(ascii(kVertex + kVertex), HasSubstr("must have exactly one element \"vertex\" (got 2)"));
   EXPECT_THAT(problem(header("ascii", kVertex + "element face 1\nproperty int a\n") + kFour + "1"),
-              HasSubstr("face must have a list \"vertex_indices\""));
+              HasSubstr("face must have a list property \"vertex_indices\""));
   std::string many = "element vertex 1\n";
   for (int i = 0; i < 1001; ++i) many += "property float a\n";
   EXPECT_THAT(ascii(many), HasSubstr("more than 1,000 elements and properties (limit 1,000)"));
 }
 
-// A count that exceeds the file is rejected before memory is allocated for it.
+// An element count that exceeds the file size is rejected before memory for the elements is allocated.
 TEST(Ply, ChecksCountsAgainstFileSize) {
   for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
     EXPECT_THAT(problem(ply_header(format, 9'999'999, 1)),
@@ -150,7 +150,8 @@ TEST(Ply, ChecksCountsAgainstFileSize) {
                 HasSubstr("vertices (limit 10,000,000, mesh_vertices)"));
     EXPECT_THAT(problem(ply_header(format, 0, 9'223'372'036'854'775'807)),
                 HasSubstr("element \"face\" must have"));
-    for (const char* count : {"9223372036854775807", "2305843009213693952"})  // times 8 the latter is 0
+    // 8 times the second count overflows to 0.
+    for (const char* count : {"9223372036854775807", "2305843009213693952"})
       EXPECT_THAT(problem(header(format, std::string("element x ") + count +
                                              "\nproperty list uint int y\nproperty int z\n" + kVertex)),
                   HasSubstr("element \"x\" must have"));
@@ -166,7 +167,7 @@ TEST(Ply, ReportsPositionOfBodyErrors) {
             "line 12: value must be a finite number (got \"nan\")");
   EXPECT_EQ(ascii(kFour + "2 0 1 2 3\n"), "line 14: face 0 must have at least 3 corners (got 2)");
   EXPECT_THAT(ascii(kFour + "3 0 1 4\n"),
-              HasSubstr("line 14: vertex of face 0 must be an integer of at least 0 and < 4 (got 4)"));
+              HasSubstr("line 14: vertex of face 0 must be an integer >= 0 and < 4 (got 4)"));
   EXPECT_THAT(ascii(kFour + "3 0 1 -1\n"), HasSubstr("got -1"));
   EXPECT_THAT(ascii(kFour + "3 0 1 1.5\n"), HasSubstr("got 1.5"));
   EXPECT_THAT(ascii(kFour + "-3 0 1 1\n"),
@@ -180,7 +181,7 @@ TEST(Ply, ReportsPositionOfBodyErrors) {
   append(bytes, std::uint8_t{3});
   for (int i = 0; i < 3; ++i) append(bytes, 0);
   EXPECT_THAT(problem(bytes),
-              HasSubstr("coordinates must be at most 1e+12 in magnitude (got (0, inf, 0) for vertex 0)"));
+              HasSubstr("coordinates must be at most 1e+12 m in magnitude (got (0, inf, 0) for vertex 0)"));
 }
 
 }  // namespace

@@ -23,12 +23,12 @@ TEST(SmoothNormals, CreasesCubeAt30DegreesAndRoundsItAt100) {
   TriangleMesh round = cube();
   smooth_normals(round, 100);
   EXPECT_EQ(round.positions.size(), 8u);
-  // Faces are weighted by their angle at the corner, however they are triangulated.
+  // Faces are weighted by their angle at the vertex, so the triangulation of a face has no influence.
   for (std::size_t i = 0; i < 8; ++i)
     EXPECT_LE(length(round.normals[i] - round.positions[i] / std::sqrt(3.0)), 1e-15);
 }
 
-// The cube's faces differ by 90 degrees. A crease angle of exactly 90 degrees keeps them apart.
+// The cube's faces differ by 90 degrees. A crease angle of exactly 90 degrees does not smooth them.
 TEST(SmoothNormals, SeparatesFacesAtExactCreaseAngle) {
   for (const auto& [degrees, vertices] : {std::pair(89.9, 24u), std::pair(90.0, 24u), std::pair(90.1, 8u)}) {
     TriangleMesh mesh = cube();
@@ -50,8 +50,8 @@ TEST(SmoothNormals, SmoothsAcrossUvSeams) {
     EXPECT_LE(length(mesh.normals[i] - mesh.positions[i] / std::sqrt(3.0)), 1e-15);
 }
 
-// The normal of a sphere of rings and segments is the direction from the centre. The discretization error
-// falls with the square of the step.
+// The exact normal of the tessellated sphere is the direction from its centre. The discretization error
+// decreases with the square of the step.
 TEST(SmoothNormals, ConvergesToNormalsOfSphere) {
   double last = 1;
   for (const int n : {8, 16, 32, 64}) {

@@ -57,7 +57,7 @@ TEST(Stl, ReportsPositionOfErrors) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   std::memcpy(bytes.data() + 84 + 3 * 50 + 12 + 12, &nan, 4);
   EXPECT_THAT(problem(bytes),
-              HasSubstr("facet 3 at byte 234: coordinates must be at most 1e+12 in magnitude (got ("));
+              HasSubstr("facet 3 at byte 234: coordinates must be at most 1e+12 m in magnitude (got ("));
   const std::string facet = "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n";
   EXPECT_EQ(problem("solid\n" + facet + "vertex 1 inf 0\n"),
             "line 6: y must be a finite number (got \"inf\")");

@@ -32,8 +32,8 @@ inline std::string problem(std::string_view bytes, const MeshLimits& limits = {}
   return "accepted";
 }
 
-// Returns the cube [-1, 1]^3: 8 vertices, 12 triangles, the front outside. Vertex i has the bits of i as
-// signs.
+// Returns the cube [-1, 1]^3 with 8 vertices, 12 triangles and outward front faces. The bits of i determine
+// the signs of vertex i's coordinates.
 inline TriangleMesh cube() {
   TriangleMesh mesh;
   for (int i = 0; i < 8; ++i)
@@ -131,7 +131,8 @@ inline std::string base64_of(std::string_view bytes) {
   return out;
 }
 
-// Builder of a glTF document: accessors in the order of the calls, then other members as text.
+// Builder of a glTF document. Accessors are numbered in the order of the calls, and other members are added
+// as text.
 class Gltf {
  public:
   // Adds an accessor and returns its number.
@@ -187,7 +188,7 @@ class Gltf {
   int count_ = 0;
 };
 
-// Returns a mesh as accessors 0 (positions) and 1 (indices), shown by node 0.
+// Returns a mesh as accessors 0 (positions) and 1 (indices), referenced by node 0.
 inline Gltf gltf_of(const TriangleMesh& mesh) {
   Gltf gltf;
   gltf.positions(mesh.positions);

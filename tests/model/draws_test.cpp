@@ -16,7 +16,7 @@ SamplePoint<double> draw(const Draws& draws, SampleSet set, int depth, int slot)
   return {static_cast<double>(point.u[0]), static_cast<double>(point.v[0])};
 }
 
-// A random number depends on its pixel, not on the tile of the render.
+// Pixels in the overlap of two tiles have the same random numbers in both.
 TEST(Draws, DependsOnPixelNotTile) {
   const Draws whole(7, TileView{0, 0, kTileSide, kTileSide}, 3);
   const Draws beside(7, TileView{16, 8, kTileSide, kTileSide}, 3);
@@ -43,8 +43,7 @@ TEST(Draws, AgreesInFloatAndDouble) {
   }
 }
 
-// Numbers do not depend on earlier draws: here all of some tiles and samples, and again in reverse order,
-// from other objects.
+// Draws the numbers of some tiles and samples, then draws them again in reverse order from new objects.
 TEST(Draws, IsIndependentOfEarlierDraws) {
   covers("light-3");
   constexpr int kTiles = 3, kSamples = 5, kDepths = 3;
@@ -67,8 +66,8 @@ TEST(Draws, IsIndependentOfEarlierDraws) {
           ASSERT_EQ(numbers_of(tile, sample, depth, slot), forward[--left]);
 }
 
-// Sets, depths and frames have separate sequences. No two are equal, and their correlation over the pixels of
-// a tile stays below 4 standard deviations.
+// Each sample set, depth and frame has its own sequence. The correlation of two sequences over the pixels of
+// a tile stays within 4 standard deviations of 0.
 TEST(Draws, IsUncorrelatedAcrossSetsDepthsAndFrames) {
   const TileView tile{0, 0, kTileSide, kTileSide};
   TileView later = tile;
@@ -88,8 +87,8 @@ TEST(Draws, IsUncorrelatedAcrossSetsDepthsAndFrames) {
     }
 }
 
-// A quarter of the 256 samples is in the lower half of both sets, as with independent samples. Two sequences
-// in the same order would have a deviation of .25 over pixels at any sample count.
+// On average, a quarter of the 256 samples is in the lower half of both sets, as for independent samples. If
+// both sets had the same order, this fraction would vary with a standard deviation of .25 between pixels.
 TEST(Draws, CoversProductOfTwoSets) {
   covers("light-2");
   constexpr int kSamples = 256, kPixels = 64;

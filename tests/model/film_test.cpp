@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// Returns sums of one sample: 0.5 at the pixels of the tile, NaN in the other slots.
+// Returns sums of one sample: 0.5 at the pixels of the tile, NaN elsewhere.
 std::unique_ptr<TileSums> sums_of(const TileView& tile) {
   auto sums = std::make_unique<TileSums>();
   for (auto& plane : sums->radiance) plane.fill(kNan);

@@ -125,7 +125,7 @@ TEST(EditDistance, CountsEditsAndTranspositions) {
   EXPECT_EQ(edit_distance("kitten", "sitting", 2), 3);
 }
 
-// Returns the edit distance, computed with the whole table row by row.
+// Returns the edit distance, computed with the full dynamic-programming table.
 int slow_edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::vector<int>> d(a.size() + 1, std::vector<int>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i)
@@ -170,18 +170,19 @@ TEST(Suggestion, FindsTyposCaseAndAbbreviations) {
   EXPECT_EQ(nearest("rad", keys), "radius");
   EXPECT_EQ(nearest("", keys), std::nullopt);
   EXPECT_EQ(nearest("", std::vector<std::string_view>{"one"}), std::nullopt);
-  EXPECT_EQ(nearest("e", std::vector<std::string_view>{"eye", "edge"}), std::nullopt) << "it may be either";
+  EXPECT_EQ(nearest("e", std::vector<std::string_view>{"eye", "edge"}), std::nullopt)
+      << "ambiguous abbreviation";
   EXPECT_EQ(nearest("to", keys), std::nullopt);
   EXPECT_EQ(nearest("colour", keys), std::nullopt);
   EXPECT_EQ(nearest(std::string(1 << 20, 'x'), keys), std::nullopt);
-  std::vector<std::string> names;  // a bad document must not cause an endless search
+  std::vector<std::string> names;  // the cost of a search must be limited
   for (int i = 0; i < 200'000; ++i) names.push_back(std::string(60, 'a') + std::to_string(i % 10));
   EXPECT_EQ(nearest(std::string(62, 'b'), std::vector<std::string_view>(names.begin(), names.end())),
             std::nullopt);
   EXPECT_EQ(did_you_mean("uup", keys), " (did you mean \"up\"?)");
 }
 
-TEST(Suggestion, FindsKeysOfTheSameMeaning) {
+TEST(Suggestion, FindsSynonymousKeys) {
   const auto key_for = [](std::string_view word, std::vector<std::string_view> keys) {
     return nearest_key(word, keys).value_or("none");
   };
@@ -215,7 +216,7 @@ TEST(Suggestion, FindsKeysOfTheSameMeaning) {
   EXPECT_EQ(key_for("raduis", {"center", "radius"}), "radius") << "spelling";
 }
 
-TEST(Suggestion, OfMeaningTakesFreeKeysOnly) {
+TEST(Suggestion, SuggestsOnlyUnusedSynonyms) {
   const std::vector<std::string_view> with_vertices = {"material", "vertices"}, plane = {"point", "normal"};
   EXPECT_EQ(nearest_key("points", with_vertices), "vertices");
   EXPECT_EQ(nearest_key("points", plane), "point") << "spelling";

@@ -11,7 +11,7 @@ namespace {
 
 void read_text(std::string_view text, const Params::Read& read) { read_document(parse_document(text), read); }
 
-// Returns the problems as lines "pointer: detail".
+// Returns one line "pointer: detail" for each problem.
 std::vector<std::string> problems(std::string_view text, const Params::Read& read) {
   std::vector<std::string> lines;
   try {
@@ -69,7 +69,7 @@ TEST(Reader, SuggestsNearestKey) {
             Lines{R"(: unknown key "colour")"});
 }
 
-TEST(Reader, SuggestsAKeyOfTheSameMeaningThatIsFree) {
+TEST(Reader, SuggestsUnusedSynonymousKey) {
   EXPECT_EQ(problems(R"({"position": [0,0,0], "radius": 1})", read_sphere),
             (Lines{R"(: missing key "center" (must be 3 numbers from -1e12 to 1e12))",
                    R"(: unknown key "position" (did you mean "center"?))"}));
@@ -77,7 +77,7 @@ TEST(Reader, SuggestsAKeyOfTheSameMeaningThatIsFree) {
             Lines{R"(: unknown key "position")"});
 }
 
-TEST(Reader, CutsLongValues) {
+TEST(Reader, TruncatesLongValues) {
   const std::string text = R"({"radius": ")" + std::string(100000, 'a') + R"(", "center": [0,0,0]})";
   EXPECT_EQ(problems(text, read_sphere),
             Lines{"/radius: must be a number from 1e-12 to 1e12 (got \"" + std::string(39, 'a') + "...)"});

@@ -11,7 +11,7 @@
 #include "core/pictures/picture_file.h"
 #include "tests/support/sanitized.h"
 
-// Files that make decoders spend memory or time on data other than texels.
+// Tests files that make decoders use memory or time for data other than texels.
 namespace orrery::test {
 namespace {
 
@@ -50,8 +50,8 @@ std::string exr_attribute(const std::string& name, const std::string& type, cons
   return name + '\0' + type + '\0' + little_endian(static_cast<std::uint32_t>(value.size())) + value;
 }
 
-// Returns a progressive file whose `scans` contain only ends of bands: a few bytes for each 32,767 blocks of
-// 64 texels.
+// Returns a progressive JPEG whose `scans` scans contain only end-of-band codes. A scan takes a few bytes for
+// each 32,767 blocks of 8 x 8 texels.
 std::string progressive_jpeg(int width, int height, int components, int scans) {
   std::string file = "\xff\xd8" + jpeg_segment('\xdb', '\0' + std::string(64, '\1'));
   std::string frame = "\x08"s + big_endian(static_cast<std::uint32_t>(height)).substr(2) +
@@ -144,7 +144,7 @@ TEST(PictureDecoder, LimitsHdrHeader) {
             "header has more than 65,536 bytes (limit 65,536)");
 }
 
-// A file of 360 bytes makes libjpeg allocate two bytes for each coefficient.
+// This file of 360 bytes makes libjpeg allocate 256 MiB, two bytes for each coefficient.
 TEST(PictureDecoder, ChargesDecoderMemory) {
   const std::string bytes = progressive_jpeg(16384, 2048, 4, 4);
   ASSERT_LT(bytes.size(), 1000u);
@@ -158,13 +158,13 @@ TEST(PictureDecoder, ChargesDecoderMemory) {
       return held;
     };
   });
-  if (kSanitized) GTEST_SKIP() << "sanitizers count no memory";
+  if (kSanitized) GTEST_SKIP() << "sanitizers disable memory accounting";
   EXPECT_THROW(account->run({}, [&] { read_picture(bytes); }), Busy);
   EXPECT_GE(asked, 2u * 4 * 16384 * 2048);
 }
 
 TEST(PictureDecoder, LimitsDecoderMemoryToEstimate) {
-  if (kSanitized) GTEST_SKIP() << "the memory of sanitizers has no limit";
+  if (kSanitized) GTEST_SKIP() << "sanitizers disable memory limits";
   const std::string bytes = progressive_jpeg(16384, 2048, 4, 4);
   PictureFile file = inspect(bytes);
   file.decoder_bytes = 0;

@@ -11,7 +11,7 @@
 #include "core/base/error.h"
 #include "core/image/files.h"
 
-// Pictures read back after writing, and files that are not pictures.
+// Tests the reading of encoded images, damaged images and other files.
 namespace orrery::test {
 namespace {
 
@@ -145,12 +145,12 @@ TEST(Pictures, ReportsPositionOfDamage) {
   EXPECT_EQ(refusal("\xff\xd8\xff\xe0\x00\x02x"s),
             "JPEG: damaged at byte 6: segment must begin with byte 255 (got 120)");
   EXPECT_EQ(refusal("\xff\xd8\xff\xd9"), "JPEG: damaged at byte 2: file ends without a scan");
-  EXPECT_EQ(refusal("#?RGBE\n\nX\n"), "HDR: damaged at byte 8: size must be like -Y 512 +X 1024");
+  EXPECT_EQ(refusal("#?RGBE\n\nX\n"), "HDR: damaged at byte 8: size must have the form -Y 512 +X 1024");
   EXPECT_EQ(refusal("#?RGBE\n"), "HDR: damaged at byte 7: data ends early (size is missing)");
   EXPECT_EQ(refusal("\x76\x2f\x31\x01"), "EXR: damaged at byte 4: data ends early (needs 1 byte, got 0)");
 }
 
-// A library's text has several lines and names our pseudo file.
+// Messages of the libraries have several lines and contain an internal file name.
 TEST(Pictures, ShortensLibraryErrorsToOneLine) {
   std::string png = encode_png(coded_image(8, 8, 1));
   png[png.size() - 13] = static_cast<char>(png[png.size() - 13] ^ 1);  // checksum of the last IDAT

@@ -6,7 +6,7 @@
 #include "tests/support/exhaustive.h"
 #include "tests/support/pictures.h"
 
-// Compares ray estimates with hand-computed sums of the branching process, and with traced rays.
+// Compares ray estimates with hand-computed sums of the branching process and with counts of traced rays.
 namespace orrery::test {
 namespace {
 
@@ -33,7 +33,7 @@ RenderRequest deep(int max_depth) {
   return request;
 }
 
-// Returns the expected rays per camera ray.
+// Returns the estimated number of rays per camera ray.
 double expected(const std::shared_ptr<const Scene>& scene, const RenderRequest& request) {
   return expected_rays(*scene, make_plan(*scene, request)) / (8 * 4 * 2);
 }
@@ -82,11 +82,12 @@ TEST(Cost, AddsTwoRaysPerLevelForGlass) {
 
 TEST(Cost, LimitsGlassByMinContribution) {
   RenderRequest request = deep(4);
-  request.min_contribution = 0.25;  // four rays of a generation may have that weight
+  request.min_contribution = 0.25;  // at most four rays of a level can have this weight
   EXPECT_EQ(expected(balls("glass", 0), request), 1 + 2 * 0.5 + 4 * 0.25 + 4 * 0.125 + 4 * 0.0625);
 }
 
-// A time budget may end an image before its sample count, an error budget does not.
+// A time budget may end a render before its sample count. The estimate for an error budget assumes all
+// samples.
 TEST(Cost, AssumesFewerSamplesForTimeBudgets) {
   RenderRequest request = deep(0);
   request.samples = 4096;
@@ -102,7 +103,7 @@ TEST(Cost, IgnoresDepthWithoutSecondaryRays) {
   EXPECT_EQ(expected(balls("glass", 0), request), 1);
 }
 
-TEST(Cost, CountsShadowRaysOnlyForDiffuseShare) {
+TEST(Cost, CountsShadowRaysOnlyForDiffuseSurfaces) {
   Json scene = scene_of(
       "[{'type': 'sphere', 'center': [1, 0, 0], 'radius': 0.5, 'material': 'mirror'},"
       " {'type': 'sphere', 'center': [-1, 0, 0], 'radius': 0.5, 'material': 'plaster'}]",

@@ -127,7 +127,7 @@ TEST(RenderOptions, UsesDepthOfTechniqueByDefault) {
   }
 }
 
-// Settings named in the request are kept.
+// Under a budget, default and scene settings are relaxed, but settings of the request are kept.
 TEST(RenderOptions, RelaxesUnrequestedSettingsUnderBudgets) {
   Json json = sample("paper");
   json["render"].update(
@@ -201,7 +201,7 @@ TEST(RenderOptions, PrefersRequestOverScene) {
     json[std::string(name_of(option.section))][option.key] = values[0];
     const auto scene = load(json);
     const RenderSettings asked = read({{name_of(option.section), {{option.key, values[1]}}}});
-    if (option.key == "time") {  // is held within the motion
+    if (option.key == "time") {  // is clamped to the keyframes
       EXPECT_EQ(resolve(*scene, {}).time, scene->motion.first);
       EXPECT_EQ(resolve(*scene, asked).time, scene->motion.last);
     } else {
@@ -222,7 +222,7 @@ TEST(RenderOptions, OmitsUnsetValues) {
   EXPECT_EQ(read(Json::parse(to_json(default_settings()))), default_settings());
 }
 
-// No option is a list of names yet. Such an option works like the others.
+// No option of the table is a list of names, so this test defines one.
 TEST(RenderOptions, SupportsListsOfNames) {
   struct MoreSettings : RenderSettings {
     std::optional<std::vector<std::string>> layers;

@@ -69,7 +69,7 @@ TEST(Plan, OmitsShadowsOfSingleConvexBody) {
   Json scene = scene_of_materials({kRough});
   EXPECT_FALSE(plan_of(scene).shadows);
   EXPECT_EQ(sum(render(scene).stats.counts.rays.shadow), 0u);
-  scene["camera"]["eye"] = {0, 0, 0.5};  // inside it
+  scene["camera"]["eye"] = {0, 0, 0.5};  // inside the body
   scene["camera"]["look_at"] = {0, 0, -1};
   EXPECT_TRUE(plan_of(scene).shadows);
   EXPECT_TRUE(plan_of(scene_of_materials({kRough, kRough})).shadows);
@@ -105,7 +105,8 @@ TEST(Plan, IgnoresUnusedMaterials) {
 TEST(Plan, LimitsDepthForSingleMirror) {
   EXPECT_EQ(plan_of(scene_of_materials({kMirror})).max_depth, 1);
   EXPECT_EQ(plan_of(scene_of_materials({kMirror, kMirror})).max_depth, 5);
-  EXPECT_EQ(plan_of(scene_of_materials({kGlass})).max_depth, 5) << "what goes in comes out later";
+  EXPECT_EQ(plan_of(scene_of_materials({kGlass})).max_depth, 5)
+      << "light in glass is refracted at least twice";
 }
 
 TEST(Plan, SendsNoSecondaryRaysForRaycast) {
@@ -129,13 +130,13 @@ TEST(Plan, ChoosesDoubleForVisibleFloatErrors) {
   EXPECT_FALSE(is_double(Vec3d(), 1, 4));
   EXPECT_FALSE(is_double(Vec3d(100, 0, 0), 1, 4));
   EXPECT_TRUE(is_double(Vec3d(1e6, 1e6, 1e6), 1, 4));
-  EXPECT_TRUE(is_double(Vec3d(0, 0, 0), 1e-5, 4)) << "a speck far from the eye";
-  EXPECT_FALSE(is_double(Vec3d(0, 0, 0), 1e-5, 4e-5)) << "only ratios count";
+  EXPECT_TRUE(is_double(Vec3d(0, 0, 0), 1e-5, 4)) << "tiny and far from the eye";
+  EXPECT_FALSE(is_double(Vec3d(0, 0, 0), 1e-5, 4e-5)) << "only ratios of lengths matter";
   RenderRequest request;
   request.precision = Precision::single_precision;
   EXPECT_FALSE(
       plan_of(scene_of("[{'type': 'sphere', 'center': [1e9, 0, 0], 'radius': 1}]"), request).double_precision)
-      << "as asked";
+      << "as requested";
 }
 
 TEST(Plan, ChoosesListForFewPrimitives) {
@@ -147,7 +148,7 @@ TEST(Plan, ChoosesListForFewPrimitives) {
   for (const auto& type : accelerator_types()) {
     RenderRequest request;
     request.accelerator = type.name;
-    EXPECT_STREQ(plan_of(scene_with(objects), request).accelerator->name, type.name) << "as asked";
+    EXPECT_STREQ(plan_of(scene_with(objects), request).accelerator->name, type.name) << "as requested";
   }
 }
 
@@ -206,7 +207,7 @@ TEST(Plan, EndsDistributedRaysAtDiffuseSurfaces) {
   EXPECT_GT(plan_of(scene, request).reuse, 1);
 }
 
-TEST(Plan, GivesAReasonForEveryDecision) {
+TEST(Plan, GivesReasonForEveryDecision) {
   for (const std::string& name : sample_names())
     for (const Decision& decision : plan_of(sample(name)).decisions) {
       EXPECT_FALSE(decision.subject.empty() || decision.choice.empty() || decision.reason.empty()) << name;
@@ -233,7 +234,7 @@ TEST(Plan, FallsBackToSceneSettings) {
   EXPECT_EQ(plan.samples, 3);
 }
 
-// Compares the settings that determine the image, besides the scene.
+// Compares the settings that, together with the scene, determine the image.
 void expect_same_picture(const Plan& a, const Plan& b) {
   EXPECT_EQ(std::pair(a.width, a.height), std::pair(b.width, b.height));
   EXPECT_EQ(a.samples, b.samples);
@@ -272,7 +273,7 @@ TEST(Plan, RoundTripsThroughRequest) {
     for (const RenderRequest& request : {RenderRequest(), turned, cast}) {
       SCOPED_TRACE(name + " " + to_json(request));
       const Plan plan = make_plan(*scene, request);
-      EXPECT_NE(settings_of(plan).precision, Precision::automatic);  // nothing is left to decide
+      EXPECT_NE(settings_of(plan).precision, Precision::automatic);  // the plan has chosen a type
       const std::string written = to_json(settings_of(plan));
       for (const RenderOption& option : render_options())
         EXPECT_TRUE(option.given(read_request(parse_document(written)))) << option.key;

@@ -12,12 +12,12 @@
 #include "tests/support/pictures.h"
 #include "tests/support/random.h"
 
-// Compares the planned number type with double precision. Scenes with visible float errors are rendered in
-// double, and the plan names the reason.
+// Tests the planned number type. A scene must be rendered in double if float causes visible errors, and the
+// plan must state the reason.
 namespace orrery::test {
 namespace {
 
-constexpr double kMaxError = 5e-4;  // root mean square, off edges
+constexpr double kMaxError = 5e-4;  // root mean square, without edges
 constexpr float kEdge = 0.1f;       // radiance step between neighbours at an edge
 
 struct View {
@@ -41,7 +41,7 @@ View view(const std::shared_ptr<const Scene>& scene, Precision precision) {
   return seen;
 }
 
-// Returns true if the 3 x 3 neighbourhood has another object or a step of radiance.
+// Returns true if the 3 x 3 neighbourhood contains another object or a radiance step above kEdge.
 bool is_edge(const View& seen, int x, int y) {
   const auto object = [&](int i, int k) {
     return seen.objects[static_cast<std::size_t>(k * seen.picture.width + i)];
@@ -54,7 +54,7 @@ bool is_edge(const View& seen, int x, int y) {
   return false;
 }
 
-// Returns the root mean square difference from `right`, off its edges.
+// Returns the root mean square difference from `right`, without the edges of `right`.
 double error_off_edges(const View& seen, const View& right) {
   double sum = 0;
   int count = 0;
@@ -109,7 +109,7 @@ TEST(Precision, UsesFloatWithoutVisibleErrorForSampleScenes) {
   }
 }
 
-// Includes layers that approach each other only later.
+// The layers of this scene approach each other only during the motion.
 TEST(Precision, UsesSmallestGapDuringMotion) {
   const auto scene = load(from_file("tests/scenes/closing_gap.json"));
   EXPECT_TRUE(make_plan(*scene, {}).double_precision);
@@ -146,7 +146,8 @@ TEST(Precision, ConsidersPositionOfInstancedPlanes) {
   EXPECT_EQ(scene->facts.magnitude.where, "/instances/0");
 }
 
-// Scenes too small for float are right in double, down to the smallest size of the format.
+// Scenes that are too small for float render correctly in double, down to the smallest size that the format
+// allows.
 TEST(Precision, StaysExactForTinyScenes) {
   const Json tiny = from_file("tests/scenes/precision/mesh_of_size_1e-14.json");
   const Picture large = render(scaled(tiny, 0x1p47), in_double());
@@ -157,7 +158,7 @@ TEST(Precision, StaysExactForTinyScenes) {
   EXPECT_EQ(first_problem(scaled(tiny, 1e-80)), "/objects/0");
 }
 
-// ---- random scenes, each with some features that are hard for float
+// ---- random scenes with features that are hard for float
 
 class RandomScene {
  public:
@@ -309,9 +310,9 @@ TEST(Precision, MatchesDoubleForRandomScenes) {
   }
   RecordProperty("scenes in float", in_float);
   RecordProperty("scenes for which float suffices", float_suffices);
-  std::printf("%d of %d scenes in float, their worst error %.2g; float would do for %d\n", in_float, kScenes,
-              worst, float_suffices);
-  EXPECT_GT(float_errs, kScenes / 20) << "the scenes ask for too little";
+  std::printf("%d of %d scenes planned in float (worst error %.2g), float suffices for %d\n", in_float,
+              kScenes, worst, float_suffices);
+  EXPECT_GT(float_errs, kScenes / 20) << "too few scenes need double";
   EXPECT_GT(in_float, 0.4 * float_suffices);
 }
 

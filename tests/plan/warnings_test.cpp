@@ -7,7 +7,7 @@
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 
-// Tests warnings for images that show nothing useful, and their absence for deliberate choices.
+// Tests warnings about images that show nothing useful. Deliberate choices must not cause warnings.
 namespace orrery::test {
 namespace {
 
@@ -55,14 +55,14 @@ TEST(Warnings, ReportsEnergyCreatingMaterials) {
   Json scene = lit(kBall);
   scene["materials"]["white"] =
       json("{'type': 'metallic-roughness', 'base_color': 1, 'roughness': 0.5, 'strict': true}");
-  EXPECT_EQ(warned(scene), "") << "nothing sends light to each other";
+  EXPECT_EQ(warned(scene), "") << "no interreflection in this technique";
   scene["render"]["technique"] = "path";
   EXPECT_EQ(warned(scene), "/objects/0/material ");
   scene["materials"]["white"]["strict"] = false;
   EXPECT_EQ(warned(scene), "");
 }
 
-// Light without extent reaches a floor by way of a smooth ball with probability 0.
+// Light from a source without extent reaches the floor through or off a smooth ball with probability 0.
 TEST(Warnings, ReportsLightsUnreachableThroughSmoothSurfaces) {
   covers("light-53");
   const auto with = [](const char* light, const char* ball) {
@@ -91,12 +91,12 @@ TEST(Warnings, ReportsLightsUnreachableThroughSmoothSurfaces) {
   EXPECT_EQ(warned(with(lantern, frosted)), "");
   Json mixed = with(lantern, frosted);
   mixed["materials"]["other"] = json(glass);
-  EXPECT_EQ(warned(mixed), "") << "nothing is made of it";
+  EXPECT_EQ(warned(mixed), "") << "no object has this material";
   mixed["objects"][0]["material"] = "other";
   mixed["materials"]["ball"] = json("{'type': 'lambert'}");
   EXPECT_EQ(warned(mixed), "/lights/0 ");
   mixed["render"]["max_depth"] = 1;
-  EXPECT_EQ(warned(mixed), "") << "too short for any lamp";
+  EXPECT_EQ(warned(mixed), "") << "paths are too short to reach a light";
   mixed["render"].erase("max_depth");
   mixed["render"]["technique"] = "whitted";
   EXPECT_EQ(warned(mixed), "");
@@ -121,10 +121,10 @@ TEST(Warnings, ReportsCameraInsideOpaqueShape) {
   EXPECT_EQ(warned(lit(kBall, {0, 0, 1.1})), "");
   EXPECT_EQ(warned(lit("{'type': 'box', 'min': [-1, -1, -1], 'max': [1, 1, 1]}", {0.9, 0.9, 0.9})),
             "/camera/eye ");
-  EXPECT_EQ(warned(lit(kBall, {-0.7, -0.7, -0.7})), "") << "in the corner of its box, and in its shadow";
+  EXPECT_EQ(warned(lit(kBall, {-0.7, -0.7, -0.7})), "") << "outside of the ball, but inside its bounding box";
   RenderRequest near;
   near.distance = 0.1;
-  EXPECT_EQ(warned(lit(kBall), near), "/camera/eye ") << "an orbit leads there";
+  EXPECT_EQ(warned(lit(kBall), near), "/camera/eye ") << "the requested distance moves the eye into the ball";
 }
 
 TEST(Warnings, AcceptsCameraInsideLitRoom) {
@@ -145,7 +145,7 @@ TEST(Warnings, AcceptsCameraInsideFurnishedAmbientRoom) {
             "/camera/eye ");
 }
 
-// The check compares each shape around the camera with each light, and so has a limit on shapes.
+// The check tests each shape around the camera against each light, so it stops after eight shapes.
 TEST(Warnings, StopsAfterEightShapesAroundCamera) {
   const auto warned_after = [](int lit_shapes) {
     Json scene = lit("", {0, 0, 4}, "[{'type': 'point', 'position': [0, 0, 5]}]");
@@ -171,11 +171,11 @@ TEST(Warnings, AcceptsCameraInsideGlass) {
 TEST(Warnings, ReportsEmptyView) {
   Json scene = lit(kBall);
   scene["camera"]["look_at"] = {0, 0, 9};
-  EXPECT_EQ(warned(scene), "/camera ") << "it is behind";
+  EXPECT_EQ(warned(scene), "/camera ") << "the ball is behind the camera";
   scene["camera"]["look_at"] = {0, 9, -4};
-  EXPECT_EQ(warned(scene), "/camera ") << "it is below";
+  EXPECT_EQ(warned(scene), "/camera ") << "the ball is outside of the view";
   Json floor = lit("{'type': 'plane', 'point': [0, -1, 0], 'normal': [0, 1, 0]}");
-  EXPECT_EQ(warned(floor), "") << "it has no end";
+  EXPECT_EQ(warned(floor), "") << "a plane is infinite";
 }
 
 TEST(Warnings, FollowsInstances) {

@@ -26,8 +26,8 @@ World<double> world_of(const PreparedScene& scene, const Plan& plan) {
   return world_for<double>(scene.parts(), *plan.accelerator, plan.time, build_ms);
 }
 
-// Calls visit(rays, put) for each tile, with rays (dx, dy) pixels off the pixels' centres. put(pixels, slot,
-// value) sets the pixel of a slot.
+// Calls visit(rays, put) for each tile, with rays offset by (dx, dy) pixels from the pixel centres.
+// put(pixels, slot, value) sets the pixel of element `slot` of the tile.
 template <class Visit>
 void for_each_tile(const Plan& plan, float dx, float dy, const Visit& visit) {
   TileSamples samples;
@@ -49,7 +49,7 @@ void for_each_tile(const Plan& plan, float dx, float dy, const Visit& visit) {
 
 Samples render_shifted(const PreparedScene& scene, const Plan& of_picture, float dx, float dy) {
   Plan plan = of_picture;
-  plan.cut_range = Vec3d(1);  // makes the omitted radiance a weight
+  plan.cut_range = Vec3d(1);  // the tracer then counts the weights of omitted rays
   const TracerPtr<double> tracer = make_tracer(*plan.technique, world_of(scene, plan), plan);
   const auto result = std::make_unique<TraceResult<double>>();
   TraceCounts counts;

@@ -6,7 +6,7 @@
 #include "core/model/plan.h"
 #include "core/render/renderer.h"
 
-// Linear images in memory, the program's own renders of a plan, and comparison of two images.
+// Linear images in memory, renders of a plan, and comparison of two images.
 namespace orrery {
 
 struct Picture {
@@ -19,13 +19,13 @@ struct Picture {
   const Vec3f& at(int x, int y) const { return pixels[static_cast<std::size_t>(y * width + x)]; }
 };
 
-// Renders the image as the program does.
+// Renders the image of the plan as `orrery render` does.
 Picture render_picture(const PreparedScene& scene, const Plan& plan);
 
-// Image of one sample per pixel, (dx, dy) pixels off its centre, in double precision.
+// Image with one sample per pixel at (dx, dy) pixels from the centre, in double precision.
 struct Samples {
   Picture picture;
-  std::vector<bool> cut;  // pixels with omitted rays, too deep or too weak
+  std::vector<bool> cut;  // pixels with rays that were omitted as too deep or too weak
 };
 Samples render_shifted(const PreparedScene& scene, const Plan& plan, float dx, float dy);
 
@@ -39,15 +39,16 @@ float difference(const Vec3f& a, const Vec3f& b, float brightest);
 struct Comparison {
   double rms = 0;         // over the channels of the compared pixels
   double rms_of_all = 0;  // over all pixels
-  double left_out = 0;    // share of the pixels
+  double left_out = 0;    // excluded fraction of the pixels
   double largest = 0;     // largest difference of a compared pixel
   int largest_x = 0, largest_y = 0;
 };
 
-// Clamps values to `brightest`. `left_out` has one entry per pixel.
+// Compares two images with values clamped to `brightest`. `left_out` has one element per pixel and is true
+// for excluded pixels.
 Comparison compare(const Picture& a, const Picture& b, const std::vector<bool>& left_out, float brightest);
 
-// Returns |a - b| of values clamped to `brightest`, times `gain`. Pixels left out are blue.
+// Returns |a - b| of values clamped to `brightest`, times `gain`. Excluded pixels are blue.
 Picture difference_picture(const Picture& a, const Picture& b, const std::vector<bool>& left_out,
                            float brightest, float gain);
 

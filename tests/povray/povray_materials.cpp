@@ -7,28 +7,30 @@
 namespace orrery::povray {
 namespace {
 
-// Returns a / b per channel, since POV-Ray supports only multiples of the pigment `b`. Throws Inexpressible
-// if `b` is 0 and `a` is not.
+// Returns a / b per channel, because POV-Ray supports only multiples of the pigment `b`. Throws
+// UnsupportedFeature if a channel of `b` is 0 and that of `a` is not.
 Vec3d ratio(const Vec3d& a, const Vec3d& b) {
   const auto one = [](double x, double of) {
     if (of == 0 && x != 0)
-      throw UnsupportedFeature("ambient light from a channel that is not in the pigment");
+      throw UnsupportedFeature("cannot export ambient light: its colour has a channel that kd lacks");
     return of == 0 ? 0 : x / of;
   };
   return {one(a.x, b.x), one(a.y, b.y), one(a.z, b.z)};
 }
 
-// The pigment is our diffuse colour. POV-Ray's highlights have the light's colour. `phong` is a power of the
-// mirrored direction's cosine as in ours, `specular` a power 1 / roughness of the half vector's.
+// The pigment is Orrery's diffuse colour. POV-Ray's highlights have the colour of the light. `phong` is a
+// power of the cosine at the mirrored direction, as in Orrery. `specular` is a power 1 / roughness of the
+// cosine at the half vector.
 Material rough(const Json& m) {
   const Vec3d cd = vector_of(m, "diffuse_color", Vec3d(1));
   const Vec3d kd = coefficient_of(m, "kd", Vec3d(0.8));
   const Vec3d ambient = ratio(coefficient_of(m, "ka", kd) * cd, kd * cd);
   const Vec3d highlight = coefficient_of(m, "ks", Vec3d(0)) * vector_of(m, "specular_color", Vec3d(1));
   if (highlight.x != highlight.y || highlight.y != highlight.z)
-    throw UnsupportedFeature("a coloured highlight");
+    throw UnsupportedFeature("cannot export highlight: ks must be grey");
   const double shininess = m.value("shininess", 20.0);
-  if (shininess == 0 && highlight.x > 0) throw UnsupportedFeature("a highlight of shininess 0");
+  if (shininess == 0 && highlight.x > 0)
+    throw UnsupportedFeature("cannot export highlight: shininess must be > 0");
   std::string finish = "diffuse 1 ambient rgb " + text(ambient);
   if (highlight.x > 0)
     finish += m.value("shading", "blinn-phong") == "phong"
@@ -37,9 +39,11 @@ Material rough(const Json& m) {
   return {"pigment { rgb " + text(kd * cd) + " } finish { " + finish + " } ", false};
 }
 
-// Schlick's approximation is a reflection that rises from F0 to 1 with the fifth power of 1 - cos.
+// Schlick's approximation corresponds to a POV-Ray reflection from F0 to 1 with falloff 5, the exponent of 1
+// - cos.
 Material reflective(const Json& m) {
-  if (m.value("fresnel", "schlick") != "schlick") throw UnsupportedFeature("Fresnel's equations of a metal");
+  if (m.value("fresnel", "schlick") != "schlick")
+    throw UnsupportedFeature("cannot export metal: fresnel must be schlick");
   const Vec3d n = vector_of(m, "n"), k = vector_of(m, "k"), one(1);
   const Vec3d top = (n - one) * (n - one) + k * k, bottom = (n + one) * (n + one) + k * k;
   const Vec3d f0(top.x / bottom.x, top.y / bottom.y, top.z / bottom.z);
@@ -48,14 +52,14 @@ Material reflective(const Json& m) {
           false};
 }
 
-// The filter becomes a purely absorbing medium. (An interior's fade_color does not apply to internally
-// reflected light.)
+// Exports the filter as a purely absorbing medium. An interior's fade_color would not affect internally
+// reflected light.
 Material refractive(const Json& m) {
   if (m.value("fresnel", "schlick") != "exact")
-    throw UnsupportedFeature("Schlick's approximation by the outer cosine");
+    throw UnsupportedFeature("cannot export refraction: fresnel must be exact");
   const Vec3d filter = vector_of(m, "filter", Vec3d(1));
   if (std::min({filter.x, filter.y, filter.z}) <= 0)
-    throw UnsupportedFeature("a filter that lets nothing pass");
+    throw UnsupportedFeature("cannot export filter: each channel must be > 0");
   const Vec3d absorption(-std::log(filter.x), -std::log(filter.y), -std::log(filter.z));
   std::string interior = "ior " + text(m.at("ior").get<double>());
   if (filter != Vec3d(1)) interior += " media { absorption rgb " + text(absorption) + " }";
@@ -73,7 +77,7 @@ Material material_of(const Json& material) {
   if (type == "rough") return rough(material);
   if (type == "reflective") return reflective(material);
   if (type == "refractive") return refractive(material);
-  throw UnsupportedFeature("the material type " + type);
+  throw UnsupportedFeature("cannot export material of type " + type);
 }
 
 }  // namespace orrery::povray

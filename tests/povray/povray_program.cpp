@@ -16,8 +16,8 @@ std::string header_word(std::istream& in) {
   return word;
 }
 
-// Reads a binary PPM of 16 bits a channel, most significant byte first. Throws std::runtime_error for other
-// files.
+// Reads a binary PPM with 16 bits per channel, most significant byte first. Throws std::runtime_error for
+// other files.
 Picture read_ppm(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   const std::string magic = header_word(in);
@@ -25,11 +25,11 @@ Picture read_ppm(const std::string& path) {
   const std::string largest = header_word(in);
   in.get();
   if (magic != "P6" || largest != "65535" || width <= 0 || height <= 0)
-    throw std::runtime_error(path + " is no PPM picture of 16 bits");
+    throw std::runtime_error(path + ": must be a binary PPM with 16 bits per channel");
   Picture picture(width, height);
   std::string bytes(picture.pixels.size() * 6, '\0');
   in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!in) throw std::runtime_error(path + " is too short");
+  if (!in) throw std::runtime_error(path + ": file ends early");
   const auto value = [&](std::size_t i) {
     const auto high = static_cast<unsigned char>(bytes[2 * i]),
                low = static_cast<unsigned char>(bytes[2 * i + 1]);
@@ -49,10 +49,10 @@ Picture run_povray(const std::string& folder, int width, int height) {
   const std::string command = "povray +I" + base + ".pov +O" + base +
                               ".ppm +FP16 File_Gamma=1.0 -A -D -GA +W" + std::to_string(width) + " +H" +
                               std::to_string(height) + " >" + log + " 2>&1";
-  if (std::system(command.c_str()) != 0) throw std::runtime_error("povray failed, see " + log);
+  if (std::system(command.c_str()) != 0) throw std::runtime_error("cannot run povray: see " + log);
   Picture picture = read_ppm(base + ".ppm");
   if (picture.width != width || picture.height != height)
-    throw std::runtime_error("povray's picture has another size");
+    throw std::runtime_error("image by povray must have the requested size");
   return picture;
 }
 

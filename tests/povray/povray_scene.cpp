@@ -13,7 +13,8 @@ using povray::text;
 using povray::vector_of;
 
 // All vectors are explicit, so that POV-Ray's left-handed defaults do not apply. `right` points to the right
-// of the image. The lengths of `right` and `up` are the extent of the image at the end of `direction`.
+// of the image. The lengths of `right` and `up` are the width and height of the image plane at the end of
+// `direction`.
 std::string camera_of(const Json& camera, double aspect) {
   const Vec3d eye = vector_of(camera, "eye");
   const Vec3d forward = normalize(vector_of(camera, "look_at") - eye);
@@ -30,14 +31,14 @@ std::string camera_of(const Json& camera, double aspect) {
 std::string settings_of(const Json& scene, const PovrayOptions& options) {
   const Vec3d ambient = vector_of(scene, "ambient", Vec3d()) * options.exposure;
   const Vec3d background = vector_of(scene, "background", Vec3d()) * options.exposure;
-  // adc_bailout 0: no ray is too weak. Our camera rays have depth 0, POV-Ray's have trace level 1.
+  // adc_bailout 0 traces rays of any weight. Camera rays have depth 0 in Orrery and trace level 1 in POV-Ray.
   return "#version 3.7;\nglobal_settings {\n  assumed_gamma 1\n  adc_bailout 0\n  max_trace_level " +
          std::to_string(options.max_depth + 1) + "\n  ambient_light rgb " + text(ambient) +
          "\n}\nbackground { rgb " + text(background) + " }\n";
 }
 
-// Our glass bodies cast the shadow of an opaque body, but in POV-Ray light passes straight through them.
-// Glass therefore casts no shadow there, and an invisible black body in its place does.
+// In Orrery, glass casts the shadow of an opaque body. In POV-Ray, light passes straight through glass. The
+// export therefore disables the shadow of glass and adds an invisible black body that casts it.
 std::string object_of(const Json& object, const povray::Material& material) {
   const std::string shape = povray::shape_of(object);
   if (!material.transparent) return shape + material.modifiers + "}\n";

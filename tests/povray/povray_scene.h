@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-// Export of our scenes to POV-Ray's scene description language.
+// Export of Orrery's scenes to POV-Ray's scene description language.
 namespace orrery {
 
 // Error for a scene that POV-Ray 3.7 cannot express.
@@ -16,12 +16,13 @@ class UnsupportedFeature : public std::runtime_error {
 struct PovrayOptions {
   double aspect = 1;  // width over height
   int max_depth = 5;
-  // Factor on every light source, the ambient light and the background, since POV-Ray's images end at 1.
+  // Factor on all light sources, the ambient light and the background, because POV-Ray's images are clamped
+  // at 1.
   double exposure = 1;
 };
 
-// Returns the scene for POV-Ray 3.7, exported from the JSON alone, without any renderer code. Throws
-// Inexpressible. Requires a scene that load_scene accepts.
+// Returns the scene for POV-Ray 3.7, exported from the JSON without any renderer code. Throws
+// UnsupportedFeature. Requires a scene that load_scene accepts.
 std::string povray_scene(const nlohmann::json& scene, const PovrayOptions& options);
 
 }  // namespace orrery

@@ -59,7 +59,7 @@ std::string shape_of(const Json& o) {
   if (type == "triangle") return triangle(o);
   if (type == "mesh") return mesh(o);
   if (type == "cylinder") return cylinder(o);
-  throw UnsupportedFeature("the shape " + type);
+  throw UnsupportedFeature("cannot export shape of type " + type);
 }
 
 }  // namespace orrery::povray

@@ -12,20 +12,21 @@
 #include "tests/povray/povray_program.h"
 #include "tests/povray/povray_scene.h"
 
-// Compares with POV-Ray 3.7: the same scenes, rendered by both, one sample per pixel, in linear light. Each
-// run leaves ours.png, povray.png and difference.png (8 times; blue: left out) in build/povray/<scene>/.
+// Compares Orrery with POV-Ray 3.7 on the same scenes, with one sample per pixel, in linear light. Each run
+// writes ours.png, povray.png and difference.png (8 times the difference, excluded pixels in blue) to
+// build/povray/<scene>/.
 namespace orrery {
 namespace {
 
-constexpr double kLargestRms = 0.0002;  // 10 times the error of POV-Ray's 16 bits for a range of 0 to 4
+constexpr double kLargestRms = 0.0002;  // 10 times the quantization error of 16 bits over 0 to 4
 constexpr double kMaxOmitted = 0.02;
 
-// Scene in our format and, optionally, in POV-Ray's.
+// Scene in Orrery's format and optionally in POV-Ray's.
 struct Case {
   const char* name;
   const char* file;
   RenderRequest request = {};
-  const char* povray_file = nullptr;  // written by hand, its image ends at 1; nullptr: exported
+  const char* povray_file = nullptr;  // hand-written, with an image clamped at 1. nullptr: exported
 
   float brightest() const { return povray_file ? 1 : 4; }  // clamp of both images
 };
@@ -42,7 +43,7 @@ RenderRequest depth_request(int max_depth) {
   return request;
 }
 
-// Known difference: POV-Ray ignores hits nearer than 0.001 along a ray. Bodies therefore do not touch, and a
+// Known difference: POV-Ray ignores hits within 0.001 of a ray's origin. Therefore bodies do not touch, and a
 // few rays through the edges of a glass box differ (glass, filter).
 const Case kCases[] = {
     {"paper", "scenes/paper.json", side_request(300)},
@@ -60,17 +61,17 @@ const Case kCases[] = {
     {"orthographic", "tests/povray/scenes/orthographic.json"},
 };
 
-// A pixel is an edge if one of four samples around its centre differs from the sample at the centre. A
-// difference in the last digits there moves an outline, its mirror image or a shadow over the centre. A
-// smooth surface changes far less over that distance.
+// A pixel is an edge if one of four samples around its centre differs from the sample at the centre. There, a
+// rounding error can move an outline, a reflection or a shadow across the centre. Smooth surfaces change much
+// less over this distance.
 constexpr float kEdgeDistance = 0.03f;  // pixels
 constexpr float kEdgeContrast = 0.02f;
 
-// Returns the pixels that are not compared: edges, and pixels that the two programs define differently.
+// Returns true for each excluded pixel: edges, and pixels that the two programs define differently.
 std::vector<bool> pixels_left_out(const PreparedScene& scene, const Plan& plan, float brightest) {
   const Samples centre = render_shifted(scene, plan, 0, 0);
-  // At an outline, a mesh's interpolated normal may face away from the viewer. POV-Ray flips the normal, we
-  // keep it on the visible side of the triangle.
+  // At an outline, the interpolated normal of a mesh may face away from the viewer. POV-Ray flips the normal.
+  // Orrery keeps it on the visible side of the triangle.
   std::vector<bool> out = normals_facing_away(scene, plan);
   for (const float dx : {-kEdgeDistance, kEdgeDistance})
     for (const float dy : {-kEdgeDistance, kEdgeDistance}) {
@@ -78,7 +79,7 @@ std::vector<bool> pixels_left_out(const PreparedScene& scene, const Plan& plan, 
       for (std::size_t i = 0; i < out.size(); ++i)
         if (difference(shifted.pixels[i], centre.picture.pixels[i], brightest) > kEdgeContrast) out[i] = true;
     }
-  // A ray beyond max_depth returns ambient light in our renderer, and black in POV-Ray.
+  // A ray beyond max_depth returns ambient light in Orrery, and black in POV-Ray.
   if (scene.scene().ambient != Vec3d(0))
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = out[i] || centre.cut[i];
   return out;
@@ -104,7 +105,7 @@ void PrintTo(const Case& c, std::ostream* out) { *out << c.file; }
 
 class Povray : public testing::TestWithParam<Case> {};
 
-TEST_P(Povray, RendersSamePicture) {
+TEST_P(Povray, RendersSameImage) {
   if (!povray_is_installed()) GTEST_SKIP() << "povray is not installed";
   const Case& c = GetParam();
   const std::string folder = std::string("build/povray/") + c.name;
@@ -121,7 +122,7 @@ TEST_P(Povray, RendersSamePicture) {
   write_png(theirs, folder + "/povray.png");
   write_png(difference_picture(ours, theirs, left_out, c.brightest(), 8), folder + "/difference.png");
 
-  std::printf("%-22s RMS %.6f, of all pixels %.6f; %.2f %% left out; largest %.4f at (%d, %d)\n", c.name,
+  std::printf("%-22s RMS %.6f (all pixels %.6f), %.2f %% excluded, largest %.4f at (%d, %d)\n", c.name,
               result.rms, result.rms_of_all, 100 * result.left_out, result.largest, result.largest_x,
               result.largest_y);
   EXPECT_LE(result.rms, kLargestRms);

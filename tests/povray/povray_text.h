@@ -6,7 +6,7 @@
 
 #include "core/math/vec3.h"
 
-// Input and output of numbers, points and JSON members for the parts of povray_scene().
+// Conversion of numbers, points and JSON members for the parts of povray_scene().
 namespace orrery::povray {
 
 using Json = nlohmann::json;
@@ -32,7 +32,7 @@ inline Vec3d coefficient_of(const Json& object, const char* key, const Vec3d& ot
   return value.is_number() ? Vec3d(value.get<double>()) : vector_of(value);
 }
 
-// POV-Ray modifiers for an object with this material, and true if light passes through.
+// POV-Ray modifiers for an object with a material. `transparent` is true if light passes through the object.
 struct Material {
   std::string modifiers;
   bool transparent;

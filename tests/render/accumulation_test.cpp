@@ -53,8 +53,8 @@ struct Accumulator {
   }
 };
 
-// Renders the maximum sample count of a request, of a value without a finite binary fraction. Each addition
-// errs by at most half a unit in the last place, all together by 4096 * 2^-53.
+// Accumulates the maximum sample count of a request, with a value that has no finite binary fraction. Each
+// addition has a relative error of at most 2^-53, and 4096 additions one of at most 4096 * 2^-53.
 TEST(Accumulation, KeepsConstantAtMaximumSamples) {
   covers("light-10");
   Accumulator accumulator(0.1);
@@ -64,7 +64,7 @@ TEST(Accumulation, KeepsConstantAtMaximumSamples) {
   EXPECT_EQ(accumulator.film.image(PixelFormat::linear32).linear(0, 0).x, 0.1f);
 }
 
-// Adds values that single precision would lose: adds 0.5 to a sum of 5e7.
+// Adds values of 0.5 to a sum of 5e7, where they would be lost in single precision.
 TEST(Accumulation, StaysExactAtHundredMillionSamples) {
   covers("light-10");
   constexpr int kAll = 100'000'000, kLast = 64;
@@ -79,7 +79,7 @@ TEST(Accumulation, StaysExactAtHundredMillionSamples) {
   EXPECT_EQ(accumulator.film.image(PixelFormat::linear32).linear(0, 0).x, 0.5f);
 }
 
-// Returns the variance of a pixel's mean at `samples`, over the pixels of images of several seeds.
+// Returns the variance of pixel values at `samples` samples, over all gray pixels of images with eight seeds.
 template <class Exact>
 double variance(const Json& scene, int width, int height, int samples, const Exact& exact) {
   constexpr int kSeeds = 8;
@@ -111,13 +111,13 @@ Json seen_from_above(Json scene, double height) {
   return scene;
 }
 
-// At an edge, variance falls with the power 3/2 of the sample count (Mitchell, "Consequences of Stratified
+// At an edge, variance is proportional to n^-1.5 for n samples (Mitchell, "Consequences of Stratified
 // Sampling in Graphics", SIGGRAPH 1996).
 TEST(Stratification, ReducesVarianceAsPower3Over2AtEdges) {
   covers("light-6");
   constexpr int kWidth = 64, kHeight = 16;
   constexpr double kSlope = 0.1871, kAt = 0.037;
-  // An image of 64 by 16 pixels of 1 m: white below the line y = slope x + at.
+  // An image of 64 x 16 pixels of 1 m, white below the line y = slope x + at.
   Json scene =
       seen_from_above(scene_of("[]", "{'ambient': [1, 1, 1], 'materials': {'white': {'ka': 1}}}"), kHeight);
   scene["objects"] = Json::array(
@@ -134,8 +134,8 @@ TEST(Stratification, ReducesVarianceAsPower3Over2AtEdges) {
   EXPECT_NEAR(std::log(many / few) / std::log(256), -1.5, 0.1);
 }
 
-// For smooth radiance, variance falls with the power 2 for one random point per cell. For scrambled nets the
-// power is nearly 3 (Owen, "Scrambled Net Variance for Integrals of Smooth Functions", 1997: n^-3 log n).
+// For smooth radiance, variance is proportional to n^-2 with one random point per cell. With scrambled nets
+// it is proportional to n^-3 log n (Owen, "Scrambled Net Variance for Integrals of Smooth Functions", 1997).
 TEST(Stratification, ReducesVarianceFasterThanPower2IfSmooth) {
   covers("light-6");
   constexpr int kSide = 8;

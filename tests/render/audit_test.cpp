@@ -1,4 +1,4 @@
-// Compares randomly chosen pixels with the full model, as in the image itself.
+// Tests audits, which compare random pixels of an image with the full model.
 #include "core/study/audit.h"
 
 #include <gtest/gtest.h>
@@ -43,11 +43,10 @@ TEST(Audit, BoundsTruncationErrorOfRandomScenes) {
     const Audit found = audited(scene, r, 512, static_cast<std::uint64_t>(k));
     held += !found.bound.rms || *found.bound.rms >= truth(scene, r);
   }
-  EXPECT_GE(held, 19) << "95 % of 20";
+  EXPECT_GE(held, 19) << "95 % of 20 images";
 }
 
-// From far away, where a float's spacing is half a metre, the edge of a ball is ragged. From nearby it hardly
-// is.
+// At 4,000 km, where floats are half a metre apart, the edge of a ball is ragged. At 4 m it is nearly exact.
 TEST(Audit, DetectsFloatErrors) {
   covers("certificate-11");
   const auto seen_from = [](double distance) {
@@ -68,7 +67,7 @@ TEST(Audit, DetectsFloatErrors) {
   EXPECT_GT(far.differing, 10 * std::max(1, near.differing));
 }
 
-// The objects are about as large as pixels: one sample per pixel reveals no error, but 64 do.
+// The objects are about as large as pixels: one sample per pixel reveals no error, but 64 samples do.
 TEST(Audit, DetectsUndersampling) {
   covers("certificate-23");
   Json dots = json("[]");
@@ -89,9 +88,8 @@ TEST(Audit, DetectsUndersampling) {
   EXPECT_GE(*found.bound.rms, error);
 }
 
-// A single pixel is wrong. The share of wrong pixels is reported as small, but their maximum error remains
-// the whole range.
-TEST(Audit, BoundsTheShareOfWrongPixels) {
+// A single pixel is wrong. The bound on the RMS error is small, but the maximum error has no bound.
+TEST(Audit, BoundsErrorOfSingleWrongPixel) {
   covers("certificate-24");
   const Json scene =
       scene_of("[{'type': 'sphere', 'center': [0.02, 0.02, 0], 'radius': 0.004}]", "{'ambient': [1, 1, 1]}");
@@ -102,7 +100,7 @@ TEST(Audit, BoundsTheShareOfWrongPixels) {
   const auto loaded = load(scene);
   EXPECT_GE(*found.bound.rms, rms_difference(linear_values(rendered(loaded, r).film),
                                              linear_values(rendered(loaded, many).film)));
-  EXPECT_FALSE(found.bound.max) << "the pixels that were not drawn may be off by anything";
+  EXPECT_FALSE(found.bound.max) << "pixels outside of the random sample may have any error";
 }
 
 TEST(Audit, ReportsZeroErrorForFullModel) {

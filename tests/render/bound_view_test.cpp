@@ -20,8 +20,7 @@ RenderRequest flat() {
   return r;
 }
 
-// The pixels of a mirror have the colour of the bound on its omitted reflections. Nothing is omitted
-// elsewhere.
+// Pixels of a mirror show the colour of the bound on its omitted reflections. All other pixels show 0.
 TEST(BoundView, ShowsBoundOfOmittedLight) {
   const auto loaded = test::load(test::scene_with(
       json("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'mirror'}]"),
@@ -44,13 +43,13 @@ TEST(BoundView, ShowsBoundOfOmittedLight) {
   double nearest = 1;
   for (int y = 0; y < 32; ++y)
     for (int x = 0; x < 32; ++x) nearest = std::min(nearest, length(at(x, y) - most));
-  EXPECT_LT(nearest, 1e-4) << "the largest is that of some pixel";
+  EXPECT_LT(nearest, 1e-4) << "some pixel shows the largest bound";
   r.view = View::picture;
   const RenderResult picture = test::rendered(loaded, r);
-  EXPECT_EQ(picture.stats.omitted.rms(), shown.stats.omitted.rms()) << "what is told is that of the picture";
+  EXPECT_EQ(picture.stats.omitted.rms(), shown.stats.omitted.rms()) << "both views report the same bound";
 }
 
-// Only pixels whose halves differ show noise.
+// Only pixels whose two halves of the samples differ show noise.
 TEST(BoundView, ShowsSamplingNoise) {
   const auto loaded = test::load(
       test::scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]", "{'ambient': [1, 1, 1]}"));
@@ -59,11 +58,11 @@ TEST(BoundView, ShowsSamplingNoise) {
   r.samples = 4;
   r.view = View::bound;
   const std::vector<double> values = test::linear_values(test::rendered(loaded, r).film);
-  EXPECT_LT(*std::min_element(values.begin(), values.end()), 1e-6) << "the background";
-  EXPECT_GT(*std::max_element(values.begin(), values.end()), 0.1) << "the edge";
+  EXPECT_LT(*std::min_element(values.begin(), values.end()), 1e-6) << "background";
+  EXPECT_GT(*std::max_element(values.begin(), values.end()), 0.1) << "edge of the ball";
 }
 
-TEST(ColorOfError, RisesInLightnessFromBlackToWhite) {
+TEST(ColorOfError, IncreasesLightnessFromBlackToWhite) {
   EXPECT_EQ(color_of_error(0), Vec3d(0));
   EXPECT_EQ(color_of_error(kBlackError), Vec3d(0));
   EXPECT_NEAR(length(color_of_error(kWhiteError) - Vec3d(1)), 0, 1e-6);

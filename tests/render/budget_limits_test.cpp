@@ -4,7 +4,7 @@
 #include "core/render/budget.h"
 #include "tests/support/pictures.h"
 
-// Tests the ends of a budget other than its error and its time.
+// Tests renders that end for reasons other than a met error or time budget.
 namespace orrery {
 namespace {
 
@@ -26,8 +26,8 @@ TEST(ErrorBudget, SkipsWeakRaySearchWithoutSecondaryRays) {
             64u * 64 * *rendered(scene, r).budget->settings.samples);
 }
 
-// The error of fewer samples than requested is not that of the requested image.
-TEST(ErrorBudget, IsMissedBelowRequestedSamples) {
+// A render with fewer samples than requested misses the budget, even if its error is small enough.
+TEST(ErrorBudget, IsMissedWithFewerSamplesThanRequested) {
   RenderRequest r = square(64, 0.9);
   r.samples = 1024;
   const RenderResult result = rendered(test::load(test::sample("paper")), r, {.max_rays = 1e6});
@@ -36,7 +36,7 @@ TEST(ErrorBudget, IsMissedBelowRequestedSamples) {
   EXPECT_NE(result.budget->reason.find("(limit "), std::string::npos) << result.budget->reason;
 }
 
-// If a copy of the film exceeds the memory limit, the current film is the image.
+// If a copy of the film would exceed the memory limit, the render ends with the current film.
 TEST(TimeBudget, KeepsImageIfMemoryRunsOut) {
   const auto scene = test::load(test::sample("paper"));
   RenderRequest r = square(1200);  // 35 MB of sums
@@ -51,7 +51,7 @@ TEST(TimeBudget, KeepsImageIfMemoryRunsOut) {
   const RenderResult result =
       account->run({}, [&] { return rendered(scene, r, {.used_s = [] { return 0.0; }}); });
   EXPECT_EQ(result.budget->settings.samples, 2);
-  EXPECT_TRUE(result.budget->met()) << "no error was asked";
+  EXPECT_TRUE(result.budget->met()) << "the request has no error budget";
 }
 
 }  // namespace

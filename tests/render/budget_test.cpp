@@ -1,4 +1,4 @@
-// Compares the results of error and time budgets with references, and with a clock that the test advances.
+// Compares renders under error and time budgets with references. The test controls the clock.
 #include "core/render/budget.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ RenderRequest with_error(int side, double error, Space space) {
   return r;
 }
 
-// Returns the values of an image as stored in its file, in display space those of a PNG.
+// Returns the values of an image as stored in its file. In display space these are the values of a PNG.
 std::vector<double> values_of(const Film& film, Space space) {
   if (space != Space::display) return test::linear_values(film);
   std::vector<double> values;
@@ -56,7 +56,7 @@ std::vector<double> in_space(const std::vector<double>& linear, Space space) {
   return space == Space::display ? test::shown(linear) : linear;
 }
 
-// Returns small lamps, which one pixel in a hundred sees.
+// Returns a scene of small lamps. One pixel in a hundred shows a lamp.
 Json dots() {
   Json dots = test::scene_with(test::json("[]"));
   dots["materials"]["lamp"] = test::json("{'type': 'lambert', 'reflectance': 0, 'emission': [1, 1, 1]}");
@@ -68,7 +68,8 @@ Json dots() {
   return dots;
 }
 
-// A smaller error never costs less. A budget reported as met is met, and any other has a reason.
+// A budget for a smaller error never costs fewer rays. A budget that is reported as met is met, and any other
+// has a reason.
 TEST(ErrorBudget, MeetsReportedError) {
   covers("certificate-29 certificate-38");
   for (const Json& json : {test::sample("paper"), test::sample("glass"), test::sample("material-metal"),
@@ -88,7 +89,7 @@ TEST(ErrorBudget, MeetsReportedError) {
         if (result.budget->met()) {
           EXPECT_LE(realised, error) << json["title"] << " " << name_of(space);
           EXPECT_LE(*result.certificate.total().rms, error);
-        } else {  // unprovable budgets are met by the estimate
+        } else {  // only the estimate meets an unprovable budget
           EXPECT_LE(realised, 1.1 * error) << json["title"] << " " << result.budget->reason;
         }
       }
@@ -96,8 +97,7 @@ TEST(ErrorBudget, MeetsReportedError) {
   }
 }
 
-// Pilot renders, not passes, find the rays that may be omitted. Nearly all rays therefore contribute to the
-// image.
+// Pilot renders find the rays that may be omitted, so nearly all rays contribute to the image.
 TEST(ErrorBudget, TracesFewExtraRays) {
   for (const char* name : {"paper", "glass", "mirrors"}) {
     const auto scene = test::load(test::sample(name));
@@ -109,9 +109,9 @@ TEST(ErrorBudget, TracesFewExtraRays) {
   }
 }
 
-// The decision considers all pixels at once, so features hit by few samples are not darkened. (Deciding per
-// pixel loses 84 % of them.) The bound holds over seeds.
-TEST(ErrorBudget, HoldsOverSeeds) {
+// Passes end for all pixels at once, so features hit by few samples are not darkened. Ending pixels
+// individually would lose 84 % of their light. The error is met for at least 95 of 100 seeds.
+TEST(ErrorBudget, KeepsErrorOverSeeds) {
   covers("light-48 certificate-25");
   Json path = dots();
   path["render"] = {{"technique", "path"}};
@@ -149,13 +149,13 @@ Json stars(double radius, double emission) {
   return scene;
 }
 
-// Light far brighter than the display's range. If only some samples hit it, a mean of few samples is clipped
-// or dark, and halves agree on that.
+// Some light is far brighter than the range of the display. If few samples hit it, the mean is clipped or
+// dark, and both halves of the samples agree on the wrong value.
 TEST(ErrorBudget, AccountsForDisplayClipping) {
   covers("certificate-19");
   Json sky = test::sample("shape-sphere");
   sky["background"] = {30, 30, 30};
-  // The reference of tiny stars are larger ones of equal power.
+  // The reference of tiny stars is an image of larger stars of equal power.
   const std::pair<Json, Json> scenes_and_truths[] = {
       {sky, sky}, {stars(0.006, 60), stars(0.006, 60)}, {stars(0.0003, 24'000), stars(0.006, 60)}};
   for (const auto& [json, true_json] : scenes_and_truths) {
@@ -180,7 +180,7 @@ TEST(ErrorBudget, AccountsForDisplayClipping) {
   }
 }
 
-// Omitted contributions are reduced before a budget is given up, and all traced rays are reported.
+// A budget is missed only after omitted contributions have been reduced. All traced rays are reported.
 TEST(ErrorBudget, TracesWeakerRaysBeforeMissing) {
   const auto scene = test::load(test::sample("glass"));
   for (const double error : {0.057, 0.05, 0.045, 0.042}) {
@@ -189,13 +189,13 @@ TEST(ErrorBudget, TracesWeakerRaysBeforeMissing) {
   }
   RenderRequest r = with_error(64, 0.06, Space::display);
   const RenderResult hopeless = rendered(test::load(test::sample("material-glass")), r);
-  EXPECT_LE(*hopeless.budget->settings.samples, 1024) << "no sample would help";
+  EXPECT_LE(*hopeless.budget->settings.samples, 1024) << "more samples would not help";
   r.on_miss = OnMiss::fail;
   EXPECT_THROW(rendered(test::load(test::sample("material-glass")), r), BudgetMissed);
 }
 
 // Between two walls of glass, reflected rays have weights of 0.02, 0.0004 and 0.000008. Some values of
-// min_contribution therefore omit as much as one four times as large.
+// min_contribution therefore omit as much as values four times as large.
 TEST(ErrorBudget, ContinuesPastGapsInRayWeights) {
   const auto scene = test::load(test::scene_of(
       "[{'type': 'plane', 'point': [0, 0, -1], 'normal': [0, 0, 1], 'material': 'wall'},"
@@ -207,8 +207,8 @@ TEST(ErrorBudget, ContinuesPastGapsInRayWeights) {
   EXPECT_LE(*result.certificate.terms.front().bound.rms, 0.001 / 8);
 }
 
-// Two small mirrors face each other in a corner. Their omitted light is found and traced, or reported as
-// missed if it may not be traced.
+// Two small mirrors face each other in a corner. The light that they omit must be traced, or the budget must
+// be missed if it cannot be traced.
 TEST(ErrorBudget, DetectsOmittedLightInOneCorner) {
   covers("certificate-34");
   const auto scene = test::load(
@@ -222,16 +222,16 @@ TEST(ErrorBudget, DetectsOmittedLightInOneCorner) {
   r.samples = 2;
   const RenderResult cut = rendered(scene, r);
   const auto& left_out = cut.certificate.terms.front();
-  EXPECT_GT(left_out.bound.max.value(), 0.1) << "some pixels lack much";
-  EXPECT_LT(left_out.bound.rms.value(), 0.02) << "most lack nothing";
+  EXPECT_GT(left_out.bound.max.value(), 0.1) << "large for some pixels";
+  EXPECT_LT(left_out.bound.rms.value(), 0.02) << "small on average";
   EXPECT_FALSE(cut.budget->error_met);
   r.max_depth.reset();
   const RenderResult whole = rendered(scene, r);
   EXPECT_LT(whole.certificate.terms.front().bound.rms.value_or(0), left_out.bound.rms.value() / 4);
 }
 
-// Each of eight sheets reflects and refracts half of the light. Each of the rays has weight 1/256, and
-// without any of them all of the light is missing.
+// Eight overlapping glass balls have 16 surfaces, each reflecting about 4 % of the light. Each reflected ray
+// is below min_contribution and omitted. The bound must add them up.
 TEST(ErrorBudget, CountsManyWeakRays) {
   covers("certificate-5");
   Json sheets = Json::array();
@@ -245,7 +245,7 @@ TEST(ErrorBudget, CountsManyWeakRays) {
   r.min_contribution = 1.0 / 16;
   const RenderResult result = rendered(scene, r);
   ASSERT_GT(result.stats.counts.cut_rays, 0u);
-  EXPECT_GT(result.certificate.terms.front().bound.max.value(), 1.0 / 16) << "more than the weight of one";
+  EXPECT_GT(result.certificate.terms.front().bound.max.value(), 1.0 / 16) << "more than one omitted ray";
   EXPECT_FALSE(result.budget->error_met);
 }
 
@@ -270,13 +270,13 @@ TEST(ErrorBudget, KeepsRequestedSettings) {
   EXPECT_EQ(four.budget->settings.samples, 4);
   EXPECT_FALSE(four.budget->met());
   r.error = 0.9;
-  EXPECT_EQ(rendered(scene, r).budget->settings.samples, 4) << "not less either";
+  EXPECT_EQ(rendered(scene, r).budget->settings.samples, 4) << "not fewer samples either";
   r.samples.reset();
   r.max_depth = 1;
   r.precision = Precision::single_precision;
   const RenderResult single = rendered(scene, r);
   EXPECT_EQ(single.budget->settings.max_depth, 1);
-  EXPECT_FALSE(single.budget->met()) << "nothing bounds what float does";
+  EXPECT_FALSE(single.budget->met()) << "errors of float have no bound";
   EXPECT_NE(single.budget->reason.find("precision"), std::string::npos) << single.budget->reason;
 }
 
@@ -305,7 +305,7 @@ TEST(ErrorBudget, StopsAtRayLimit) {
   EXPECT_NE(result.budget->reason.find("(limit "), std::string::npos) << result.budget->reason;
 }
 
-// Expects the resulting settings to give the same image.
+// Expects the resulting settings to reproduce the image.
 void expect_repeated(const std::shared_ptr<const Scene>& scene, const RenderResult& result) {
   RenderRequest plain;
   static_cast<RenderSettings&>(plain) = result.budget->settings;
@@ -320,8 +320,8 @@ TEST(ErrorBudget, IsReproducedByReportedSettings) {
   }
 }
 
-// Clock that tiles advance. The first two passes cost the same, and each later one twice the previous. Costs
-// vary by 30 %, and some tiles stall.
+// Clock that each tile advances. Tiles of the first two passes cost the same, and those of each later pass
+// twice as much as in the previous one. Costs vary by 30 %, and some tiles stall.
 struct FakeClock {
   double now_s = 0, tile_s = 0.001;
   double share_of_stalls = 0;
@@ -358,16 +358,15 @@ TEST(TimeBudget, EndsInTimeWithWholePasses) {
     r.seconds = 0.1 + 0.01 * run;
     const RenderResult result = rendered(scene, r, clock.control());
     const double tile_s = 1.3 * clock.tile_s * *result.budget->settings.samples / 2;
-    EXPECT_LE(clock.now_s, *r.seconds + 2 * 5 * tile_s) << "two tiles at once, of which one stalls";
+    EXPECT_LE(clock.now_s, *r.seconds + 2 * 5 * tile_s) << "two concurrent tiles, one of them stalled";
     EXPECT_EQ(result.budget->seconds_met, result.budget->used_s <= *r.seconds);
     in_time += result.budget->seconds_met;
-    if (run % 3 == 0) expect_repeated(scene, result);  // with stalls
+    if (run % 3 == 0) expect_repeated(scene, result);  // runs with stalled tiles
   }
-  EXPECT_GE(in_time, 80) << "the others stall in their last tile";
+  EXPECT_GE(in_time, 80) << "the other renders stall in their last tile";
 }
 
-// The requested sample count is not a power of two. The last pass at least doubles the samples, whenever it
-// ends.
+// The requested sample count is not a power of two. The last pass at least doubles the samples.
 TEST(TimeBudget, ReportsErrorOfRenderedSamples) {
   const auto scene = test::load(test::sample("cornell-box"));
   RenderRequest r = square(40);  // 4 tiles
@@ -396,10 +395,10 @@ TEST(TimeBudget, ReportsSlowFirstPass) {
   const RenderResult result = rendered(test::load(test::sample("paper")), r, clock.control());
   EXPECT_FALSE(result.budget->seconds_met);
   EXPECT_EQ(result.budget->reason, "first pass exceeded the time limit");
-  EXPECT_EQ(result.stats.counts.rays.camera, 2u * 96 * 96) << "and is whole";
+  EXPECT_EQ(result.stats.counts.rays.camera, 2u * 96 * 96) << "the first pass is complete";
 }
 
-// Fails before rendering if the first tiles show that the budget is far out of reach.
+// Fails before the render if the first tiles show that the budget cannot be met.
 TEST(TimeBudget, FailsEarlyIfUnreachable) {
   covers("certificate-35");
   FakeClock clock;
@@ -413,9 +412,9 @@ TEST(TimeBudget, FailsEarlyIfUnreachable) {
     EXPECT_FALSE(missed.outcome().seconds_met);
     EXPECT_NEAR(*missed.outcome().min_s, 1.024, 0.2);
     EXPECT_NE(std::string(missed.what()).find("first pass would take about"), std::string::npos);
-    EXPECT_FALSE(missed.certificate().total().rms) << "nothing is known of a picture that was not made";
+    EXPECT_FALSE(missed.certificate().total().rms) << "no bound without an image";
   }
-  EXPECT_LE(clock.tiles, 16 + 2) << "of those that two threads have begun";
+  EXPECT_LE(clock.tiles, 16 + 2) << "first 16 tiles, and those already begun by two threads";
   FakeClock slow;
   slow.tile_s = 1;
   try {
@@ -423,15 +422,15 @@ TEST(TimeBudget, FailsEarlyIfUnreachable) {
     FAIL() << "expected BudgetMissed";
   } catch (const BudgetMissed& missed) {
     EXPECT_FALSE(missed.outcome().seconds_met);
-    EXPECT_FALSE(missed.outcome().min_s) << "a few tiles tell nothing";
+    EXPECT_FALSE(missed.outcome().min_s) << "too few tiles for an estimate";
   }
   FakeClock in_time;
   r.seconds = 2;
   EXPECT_TRUE(rendered(test::load(test::sample("paper")), r, in_time.control()).budget->met());
 }
 
-// Weaker rays, which a pilot did not see, restart the render. If that does not end in time, the previous
-// result is the image.
+// If the first result omits too much light that the pilot missed, a second render traces weaker rays. If it
+// does not end in time, the first result is the image.
 TEST(TimeBudget, RestoresPreviousResult) {
   const auto scene = test::load(
       test::scene_of("[{'type': 'sphere', 'center': [0.32, 0.42, 0], 'radius': 0.02, 'material': 'mirror'},"
@@ -444,7 +443,7 @@ TEST(TimeBudget, RestoresPreviousResult) {
   control.max_s = 0.1;  // a pass takes 0.064
   const RenderResult late = rendered(scene, r, control);
   EXPECT_LT(clock.now_s, 0.1);
-  EXPECT_GT(clock.tiles, 64) << "another pass began";
+  EXPECT_GT(clock.tiles, 64) << "the second render began";
   EXPECT_EQ(late.budget->settings.samples, 2);
   EXPECT_EQ(late.stats.error.samples, 2);
   expect_repeated(scene, late);
@@ -452,7 +451,7 @@ TEST(TimeBudget, RestoresPreviousResult) {
   EXPECT_LT(*whole.budget->settings.min_contribution, *late.budget->settings.min_contribution);
 }
 
-// With both budgets, the first one reached ends the render.
+// With both budgets, the render ends when it meets the first one.
 TEST(TimeBudget, EndsErrorBudgetInTime) {
   const auto scene = test::load(test::sample("paper"));
   RenderRequest r = with_error(96, 0.5, Space::display);

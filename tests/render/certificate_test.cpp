@@ -12,7 +12,7 @@
 #include "tests/support/pictures.h"
 #include "tests/support/tracing.h"
 
-// Tests the ledger of omitted contributions, and the range of all radiance.
+// Tests the ledger of omitted contributions, the range of radiance, and bounds on sampling errors.
 namespace orrery {
 namespace {
 
@@ -47,7 +47,7 @@ std::vector<Ray<double>> camera_rays(const Plan& plan) {
 
 Vec3d product(const Vec3d& a, const Vec3d& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 
-// Ratios of bound to error, one per image. Images without omissions have none.
+// Ratios of bound to error, one element per image with omissions.
 struct Tightness {
   std::vector<double> of_max, of_rms;
 };
@@ -56,7 +56,7 @@ double median(std::vector<double> values) {
   return values.at(values.size() / 2);
 }
 
-// Compares with the values of the full tree, whose own ledger is added to the bound.
+// Compares a limited render with the full ray tree, whose own ledger is added to the bound.
 void expect_within_bounds(const Json& scene, const RenderRequest& cut, Tightness& tightness) {
   const auto loaded = test::load(scene);
   const Plan plan = make_plan(*loaded, cut);
@@ -81,7 +81,7 @@ void expect_within_bounds(const Json& scene, const RenderRequest& cut, Tightness
   tightness.of_rms.push_back(std::sqrt(bounds / errors));
 }
 
-TEST(Ledger, BoundsTheErrorOfRandomScenes) {
+TEST(Ledger, BoundsErrorOfRandomScenes) {
   covers("certificate-1");
   test::Random random = scenes_seed();
   Tightness depth, threshold;
@@ -118,27 +118,29 @@ TEST(RadianceRange, ContainsRadianceOfRandomScenes) {
   }
 }
 
-// Plum reflects .3 of the ambient .4, and .3 and a highlight of 2 of the light's 2.
+// The plum ball reflects .3 of the ambient light of .4. It reflects .3 of the light of 2, plus a highlight of
+// 2 times this light: .12 + 4.6.
 TEST(RadianceRange, MatchesHandComputedPaperScene) {
   covers("certificate-6");
   const auto scene = test::load(test::sample("paper"));
   EXPECT_NEAR(max_component(scene->facts.tree_radiance.most), 4.72, 1e-9);
 }
 
-TEST(RadianceRange, FallsWithDistanceOfLights) {
+TEST(RadianceRange, DecreasesWithDistanceOfLights) {
   const auto most = [](const char* lights) {
     return test::load(test::scene_of("{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}",
                                      std::string("{'lights': [") + lights + "]}"))
         ->facts.tree_radiance.most.x;
   };
-  // The box is 9 m away, and white reflects all.
+  // The box is 9 m from the light, and its white material reflects all light.
   EXPECT_NEAR(most("{'type': 'point', 'position': [10, 0, 0], 'attenuation': [1, 0, 1]}"), 1.0 / 82, 1e-12);
   EXPECT_NEAR(most("{'type': 'point', 'position': [10, 0, 0], 'attenuation': [1, 0, 0]}"), 1, 1e-12);
   EXPECT_NEAR(most("{'type': 'directional', 'direction_to_light': [1, 0, 0], 'intensity': [3, 3, 3]}"), 3,
               1e-12);
 }
 
-// An emissive mirror, or one that does not attenuate its ambient light, adds up over repeated reflections.
+// Emission of a specular surface adds up over repeated reflections. Ambient light does not, because a coat
+// attenuates it.
 TEST(RadianceRange, IsUnknownForEmissiveSpecularSurfaces) {
   const auto finite = [](const char* material, const char* ambient) {
     return test::load(test::scene_of(
@@ -149,11 +151,12 @@ TEST(RadianceRange, IsUnknownForEmissiveSpecularSurfaces) {
   EXPECT_TRUE(finite("{'type': 'glass'}", "[1, 1, 1]"));
   EXPECT_FALSE(finite("{'type': 'glass', 'emission': [1, 0, 0]}", "[1, 1, 1]"));
   EXPECT_TRUE(finite("{'type': 'plastic', 'roughness': 0}", "[0, 0, 0]"));
-  EXPECT_TRUE(finite("{'type': 'plastic', 'roughness': 0}", "[1, 1, 1]")) << "of which it sends on 1 - R";
+  EXPECT_TRUE(finite("{'type': 'plastic', 'roughness': 0}", "[1, 1, 1]"))
+      << "ambient light is attenuated by 1 - R";
   EXPECT_TRUE(finite("{'type': 'plastic', 'roughness': 0.5}", "[1, 1, 1]"));
 }
 
-// A lamp of radiance L in a closed room of albedo a: at most L / (1 - a) with its own albedo.
+// A lamp of radiance L and albedo a in a closed room limits radiance to L / (1 - a).
 TEST(RadianceRange, MatchesGeometricSeriesForPaths) {
   const Json scene = test::scene_of(
       "[{'type': 'box', 'min': [-2, -2, -2], 'max': [2, 2, 2], 'material': 'wall'},"
@@ -166,10 +169,10 @@ TEST(RadianceRange, MatchesGeometricSeriesForPaths) {
   EXPECT_NEAR(most.z, 2, 1e-12);
   Json mirror = scene;
   mirror["materials"]["lamp"]["reflectance"] = 1;
-  EXPECT_FALSE(test::load(mirror)->facts.path_radiance.finite()) << "light may be mirrored for ever";
+  EXPECT_FALSE(test::load(mirror)->facts.path_radiance.finite()) << "light may be reflected forever";
 }
 
-// Two facing mirrors of .95 with a lit end beyond depth 5: the omitted part is .95^6 of the range.
+// Facing mirrors of reflectance .95: the light omitted beyond depth 5 is .95^6 of the range.
 TEST(Ledger, MatchesClosedFormForCorridor) {
   covers("certificate-3");
   const double n = (1 + std::sqrt(.95)) / (1 - std::sqrt(.95));
@@ -187,7 +190,7 @@ TEST(Ledger, MatchesClosedFormForCorridor) {
   EXPECT_LE(picture.stats.omitted.max(), 1.2 * left);
 }
 
-// A ray in a slab of glass beyond the critical angle never leaves. The whole ray is omitted, but the bound is
+// A ray beyond the critical angle never leaves a glass slab. All of its light is omitted, but the bound is
 // finite.
 TEST(Ledger, CoversWholeRangeInLightGuide) {
   covers("certificate-4");
@@ -204,7 +207,7 @@ TEST(Ledger, CoversWholeRangeInLightGuide) {
   EXPECT_NEAR(max_component(answer.weights), 1, 1e-12);
 }
 
-// Ambient light replaces a ray that would have been dark.
+// Omitted rays are replaced by ambient light, which may be too bright.
 TEST(Ledger, CountsTooBrightSubstitutes) {
   const auto loaded = test::load(
       test::scene_with(json("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'glass'}]"),
@@ -214,8 +217,8 @@ TEST(Ledger, CountsTooBrightSubstitutes) {
   EXPECT_EQ(make_plan(*loaded, request(1)).cut_range, Vec3d(0.9, 0.9, 0.9));
 }
 
-// Returns the number of images, of 60 seeds with 4 samples, whose bound is at least their error. The
-// reference has `samples_of_truth` samples. Calls check(certificate, error) for each image.
+// Renders 60 seeds with 4 samples. Returns the number of images whose bound is at least their error, compared
+// with `samples_of_truth` samples. Calls check(certificate, error) for each image.
 template <class Check>
 int count_bounded_seeds(const Json& scene, RenderRequest r, int samples_of_truth, const Check& check) {
   const auto loaded = test::load(scene);
@@ -238,7 +241,7 @@ int count_bounded_seeds(const Json& scene, RenderRequest r, int samples_of_truth
   return held;
 }
 
-// Edges, highlights in glass, and dots seen by one pixel in a hundred: the bound holds over seeds.
+// The scenes have edges, highlights in glass, and dots that cover one pixel in a hundred.
 TEST(Certificate, BoundsSamplingErrorOverSeeds) {
   covers("certificate-17");
   Json dots = test::scene_with(json("[]"));
@@ -254,7 +257,7 @@ TEST(Certificate, BoundsSamplingErrorOverSeeds) {
   }
 }
 
-// On a display the range of paths is bounded, too. With path reuse, errors are correlated within a tile.
+// On a display, path radiance has a finite range. With path reuse, errors are correlated within a tile.
 TEST(Certificate, BoundsPathErrorOnDisplay) {
   covers("certificate-17 certificate-18");
   for (const char* name : {"cornell-box", "outdoors"}) {
@@ -282,7 +285,7 @@ TEST(Certificate, DetectsCorrelatedPixelErrors) {
   RenderStats stats;
   test::Random random(1);
   int erring_tiles = 16;
-  const auto kind_of = [&](double shared) {  // between pixels of a tile
+  const auto kind_of = [&](double shared) {  // `shared` is the correlated fraction of the error in a tile
     stats = {};
     for (int tile = 0; tile < 16; ++tile) {
       const double of_tile = random.between(-1, 1), scale = tile < erring_tiles ? random.unit() : 0;
@@ -311,14 +314,15 @@ TEST(Certificate, DetectsCorrelatedPixelErrors) {
   erring_tiles = 16;
   EXPECT_EQ(kind_of(1), Bound::Kind::unknown);
   EXPECT_EQ(kind_of(0.3), Bound::Kind::unknown);
-  plan.reuse = 16;  // expects correlation
+  plan.reuse = 16;  // path reuse, so correlation is expected
   EXPECT_EQ(kind_of(0.3), Bound::Kind::estimated);
   plan.reuse = 1;
   kind_of(0);
   stats.error = {.samples = 4, .pixel = {1, 1}, .block4 = {}, .block32 = {}};
   const double of_pixels = *certify(plan, stats).total().rms;
   plan.reuse = 16;
-  EXPECT_GT(*certify(plan, stats).total().rms, 1.05 * of_pixels) << "16 tiles tell less than their pixels";
+  EXPECT_GT(*certify(plan, stats).total().rms, 1.05 * of_pixels)
+      << "the bound from 16 tiles is weaker than from their pixels";
 }
 
 // A root mean square is at most the maximum, and two display values differ by at most 1.
@@ -334,7 +338,7 @@ TEST(Certificate, LimitsDisplayErrorToLargestDifference) {
     EXPECT_LE(*bound.rms, *bound.max) << b;
     return *bound.rms;
   };
-  EXPECT_LT(rms_of(0.001), 0.0130) << "the root of what a mean of it may be is larger";
+  EXPECT_LT(rms_of(0.001), 0.0130) << "smaller than the bound from the mean alone";
   EXPECT_EQ(rms_of(3), 1);
   Certificate both{{{"a", Bound::proved(0.9, 0.8)}, {"b", Bound::proved(0.4, 0.3)}}, Space::display};
   EXPECT_EQ(both.total().max, 1);
@@ -343,7 +347,7 @@ TEST(Certificate, LimitsDisplayErrorToLargestDifference) {
   EXPECT_EQ(both.total().max, 1.3);
 }
 
-// All pixels of a tile have the same error.
+// All pixels of a tile have the same error, so only tiles are independent.
 TEST(Halves, BoundsMeanIfOnlyTilesAreIndependent) {
   test::Random random(1);
   int held = 0, held_by_pixels = 0;
@@ -386,7 +390,7 @@ TEST(Certificate, StaysCloseToSampleEstimate) {
   EXPECT_LT(*certificate.total().rms, 1.5 * *certificate.estimate);
 }
 
-// Samples of a constant image show no error, but the certificate does not claim zero error.
+// The samples of a constant image have no variance, but the certificate must not claim zero error.
 TEST(Certificate, NeverReportsZeroErrorFromSamples) {
   covers("certificate-20");
   const auto empty = test::load(
@@ -398,12 +402,12 @@ TEST(Certificate, NeverReportsZeroErrorFromSamples) {
   EXPECT_EQ(certificate.estimate, 0);
   EXPECT_EQ(certificate.total().kind, Bound::Kind::estimated);
   EXPECT_GE(*certificate.total().rms, 2 * std::sqrt(std::log(20) / (64 * 64)) / 2);
-  EXPECT_EQ(certificate.total().rms, certificate.min_provable) << "and none can tell less";
-  r.technique = "path";  // a lamp sampled by area has no bound
+  EXPECT_EQ(certificate.total().rms, certificate.min_provable) << "the smallest provable error";
+  r.technique = "path";  // the radiance of paths has no bound in linear space
   EXPECT_EQ(test::rendered(empty, r).certificate.total().kind, Bound::Kind::unknown);
 }
 
-TEST(Certificate, IsAsWeakAsItsWeakestTerm) {
+TEST(Certificate, HasKindOfWeakestTerm) {
   const auto certificate_of = [](const Json& scene, const RenderRequest& r) {
     return test::rendered(test::load(scene), r).certificate;
   };
@@ -411,20 +415,20 @@ TEST(Certificate, IsAsWeakAsItsWeakestTerm) {
   RenderRequest r = request(3);
   r.samples = 1;
   const Certificate single = certificate_of(glass, r);
-  EXPECT_EQ(single.total().kind, Bound::Kind::unknown) << "one sample tells nothing";
+  EXPECT_EQ(single.total().kind, Bound::Kind::unknown) << "one sample gives no error estimate";
   EXPECT_FALSE(single.total().rms);
   EXPECT_EQ(single.known().kind, Bound::Kind::proved);
   EXPECT_GT(*single.known().max, *single.known().rms);
   r.samples = 4;
   const Certificate several = certificate_of(glass, r);
   EXPECT_EQ(several.total().kind, Bound::Kind::estimated);
-  EXPECT_GT(*several.total().rms, *several.estimate) << "the ledger and the interval are added";
+  EXPECT_GT(*several.total().rms, *several.estimate) << "sum of ledger and confidence interval";
   EXPECT_FALSE(several.total().max);
   r.precision = Precision::single_precision;
-  EXPECT_EQ(certificate_of(glass, r).total().kind, Bound::Kind::unknown) << "nothing is known of float";
+  EXPECT_EQ(certificate_of(glass, r).total().kind, Bound::Kind::unknown) << "errors of float have no bound";
 }
 
-// Renders the same samples with and without clamp. The ledger equals the difference in each channel.
+// Renders the same samples with and without the clamp. The ledger equals the difference in each channel.
 TEST(Clamp, ReportsRemovedLightInLedger) {
   covers("light-50");
   for (const char* name : {"cornell-box", "material-glass", "outdoors"})
@@ -451,7 +455,7 @@ TEST(Clamp, ReportsRemovedLightInLedger) {
     }
 }
 
-// A lamp, its direct light and its mirror image are direct. Only light of more reflections is clamped.
+// The lamp, its direct light and its mirror image count as direct. Only further reflections are clamped.
 TEST(Clamp, KeepsDirectLight) {
   const auto lit = test::load(
       test::scene_of("[{'type': 'plane', 'point': [0, -1, 0], 'normal': [0, 1, 0], 'material': 'floor'},"

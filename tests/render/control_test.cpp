@@ -47,10 +47,10 @@ TEST(Control, StopsRenderImmediately) {
   EXPECT_THROW(render_frame(prepared, settle(prepared, make_plan(*paper(), request)), FilmStorage::srgb8,
                             shared_pool(), control),
                Cancelled);
-  EXPECT_LT(tiles, 5 + shared_pool().threads()) << "tiles were begun after the stop";
+  EXPECT_LT(tiles, 5 + shared_pool().threads()) << "new tiles began after the stop";
 }
 
-// Forwards to another accelerator, and requests a stop at the third batch.
+// Accelerator that forwards to another one and requests a stop at the third batch.
 class StopsAtThirdBatch final : public Accelerator<float> {
  public:
   explicit StopsAtThirdBatch(std::shared_ptr<const Accelerator<float>> behind) : behind_(std::move(behind)) {}
@@ -58,7 +58,7 @@ class StopsAtThirdBatch final : public Accelerator<float> {
   void closest(const RayBatch<float>& rays, const LaneGroups& groups, HitBatch<float>& hits,
                AcceleratorCounts& counts) const override {
     if (++batches == 3) stop.request_stop();
-    if (batches > 1000) throw std::runtime_error("it goes on");
+    if (batches > 1000) throw std::runtime_error("the stop request has no effect");
     behind_->closest(rays, groups, hits, counts);
   }
   void occlude(RayBatch<float>& rays, const LaneGroups& groups, AcceleratorCounts& counts) const override {
@@ -72,7 +72,7 @@ class StopsAtThirdBatch final : public Accelerator<float> {
   const std::shared_ptr<const Accelerator<float>> behind_;
 };
 
-// Nested glass: the tree of one camera ray can grow to billions of rays, so a stop must not wait for its end.
+// The ray tree of one camera ray in glass can have billions of rays, so a stop must end it early.
 TEST(Control, StopsInsideDeepRayTree) {
   std::string spheres;
   for (int i = 0; i < 27; ++i)
@@ -144,7 +144,7 @@ TEST(Control, PreparesSceneOnce) {
             0);
 }
 
-// An orbit frame equals the image of a scene with its camera there.
+// An orbit frame equals the image of a scene whose camera is at the same place.
 TEST(Orbit, MatchesMovedCamera) {
   Json scene = sample("paper");
   RenderRequest orbit = in_double(size(96, 64));

@@ -1,4 +1,5 @@
-// The mean square error of an image of n samples is a / n + b^2, where b is its bias.
+// Tests that renders converge without bias. The mean squared error of an image with n samples is a / n + b^2,
+// where b is the bias.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,8 +13,8 @@ namespace {
 using test::covers;
 using test::Json;
 
-// Returns mean square errors after 8, 16, ... 512 samples: six doublings. The two references are independent
-// of each other, so that their own errors cancel on average.
+// Returns the mean squared errors after 8, 16, ... 512 samples. The two references are independent, so that
+// their own errors cancel on average.
 std::vector<double> errors_of(const std::shared_ptr<const Scene>& scene, RenderRequest r,
                               const std::array<std::vector<double>, 2>& truth) {
   r.samples = 512;
@@ -31,7 +32,7 @@ std::vector<double> errors_of(const std::shared_ptr<const Scene>& scene, RenderR
   return errors;
 }
 
-// Returns b^2 of a fit with equal relative weights for all n: the slope of n times the error over n.
+// Returns b^2, fitted with equal relative weights: the slope of n times the error as a function of n.
 double squared_bias(const std::vector<double>& errors) {
   double sum_n = 0, sum_y = 0, sum_nn = 0, sum_ny = 0, n = 8;
   for (const double error : errors) {
@@ -46,8 +47,8 @@ double squared_bias(const std::vector<double>& errors) {
   return (count * sum_ny - sum_n * sum_y) / (count * sum_nn - sum_n * sum_n);
 }
 
-// Returns b^2 in its own standard errors, over seeds. Errors of stratified samples fall faster than 1 / n,
-// which makes b^2 negative.
+// Returns the mean of b^2 over seeds, in units of its standard error. The errors of stratified samples
+// decrease faster than 1 / n, which makes b^2 negative.
 double bias_in_standard_errors(const Json& json, const RenderRequest& r, const RenderRequest& unbiased) {
   constexpr int kSeeds = 8;
   const auto scene = test::load(json);
@@ -78,7 +79,7 @@ TEST(Convergence, IsUnbiasedInEveryUnbiasedMode) {
   };
   const Mode modes[] = {
       {"reuse", "cornell-box", [](RenderRequest&) {}},
-      {"paths alone", "cornell-box", [](RenderRequest& r) { r.reuse = 1; }},
+      {"no reuse", "cornell-box", [](RenderRequest& r) { r.reuse = 1; }},
       {"distributed", "technique-distributed", [](RenderRequest&) {}},
       {"whitted", "glass", [](RenderRequest&) {}},
       {"lens", "depth-of-field", [](RenderRequest&) {}},

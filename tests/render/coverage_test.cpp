@@ -6,11 +6,11 @@
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 
-// Tests the image area covered by a shape.
+// Tests the image area that a shape covers.
 namespace orrery::test {
 namespace {
 
-// Returns a ball lit by ambient light alone.
+// Returns a scene of a ball lit only by ambient light.
 Json ball(double radius, const Json& camera) {
   return scene_with(Json{{"type", "sphere"}, {"center", {0, 0, 0}}, {"radius", radius}},
                     Json{{"camera", camera}, {"ambient", {1, 1, 1}}});
@@ -28,14 +28,15 @@ TEST(Coverage, ShowsTinyBallsLikeLargeOnes) {
     }
 }
 
-// The rim is complete from 10,000 radii away. 16 samples a pixel, 512 pixels across: 3.3 million rays.
+// The rim is complete from 10,000 radii away. The image is 512 pixels wide with 16 samples per pixel.
 TEST(Coverage, KeepsRimOfDistantBalls) {
   covers("A20");
   const double distance = 1e4, angle = 2 * std::atan(1.25 / distance) * 180 / std::numbers::pi;
   RenderRequest request = in_double(size(512, 512));
   request.samples = 16;
   const double covered = render(ball(1, {{"eye", {0, 0, distance}}, {"fov_degrees", angle}}), request).sum();
-  const double radius = 256 / 1.25 / std::sqrt(1 - 1 / (distance * distance));  // silhouette, pixels
+  // Radius of the silhouette in pixels.
+  const double radius = 256 / 1.25 / std::sqrt(1 - 1 / (distance * distance));
   EXPECT_NEAR(covered / (std::numbers::pi * radius * radius), 1, 1e-4);
 }
 
@@ -43,12 +44,12 @@ TEST(Coverage, MatchesAreaOfDisc) {
   covers("R28");
   const double expected = std::numbers::pi * 20 * 20;
   RenderRequest request = size(64, 64);
-  EXPECT_NEAR(render(ball(20, orthographic(64)), request).sum(), expected, 15) << "one ray a pixel";
+  EXPECT_NEAR(render(ball(20, orthographic(64)), request).sum(), expected, 15) << "one ray per pixel";
   request.samples = 64;
   EXPECT_NEAR(render(ball(20, orthographic(64)), request).sum(), expected, 0.5);
 }
 
-// A ball of a fifth of a pixel on the corner of four pixels: one ray per pixel misses it, many do not.
+// The ball covers a fifth of a pixel at the corner of four pixels. One ray per pixel misses it, many do not.
 TEST(Coverage, ResolvesSubpixelBallsWithSamples) {
   covers("E7");
   RenderRequest request = size(16, 16);
@@ -56,10 +57,10 @@ TEST(Coverage, ResolvesSubpixelBallsWithSamples) {
   request.samples = 4096;
   EXPECT_NEAR(render(ball(.2, orthographic(16)), request).sum(), .12566, .01);
   EXPECT_NEAR(render(ball(.2, orthographic(16)), request).sum(), .12566, .001)
-      << "stratified samples do better";
+      << "stratified samples have smaller errors";
 }
 
-// The image height determines the scale of both axes: a ball is round in any aspect ratio.
+// The image height determines the scale of both axes: balls are round in images of any aspect ratio.
 TEST(Coverage, KeepsBallsRoundInAnyAspect) {
   covers("E9");
   for (const auto& [width, height] : {std::pair{640, 360}, {360, 640}, {1920, 1080}, {100, 400}})
@@ -72,7 +73,7 @@ TEST(Coverage, KeepsBallsRoundInAnyAspect) {
             left = std::min(left, x), right = std::max(right, x);
             top = std::min(top, y), bottom = std::max(bottom, y);
           }
-      const int shown = std::min(height, width);  // a tall image cuts the ball at its sides
+      const int shown = std::min(height, width);  // a tall image clips the ball at the sides
       if (bottom - top < shown) {
         EXPECT_NEAR(right - left, bottom - top, 1) << width << " x " << height;
       }
@@ -103,7 +104,7 @@ TEST(Coverage, VariesWithSeedOnlyForSeveralSamples) {
   const Picture centre = render(scene, request);
   request.seed = 2;
   EXPECT_TRUE(identical(centre, render(scene, request)))
-      << "one sample goes through the centre, whatever the seed";
+      << "a single sample is at the pixel centre for any seed";
 }
 
 }  // namespace

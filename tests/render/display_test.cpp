@@ -27,7 +27,7 @@ Bound bound_of(const char* subject, const Certificate& certificate) {
 
 constexpr const char *kCodes = "8-bit codes", *kClamp = "indirect light clamp";
 
-// In a constant image all codes have the same error, at most half of one.
+// In a constant image all codes have the same error, at most half a code.
 TEST(DisplayCertificate, MatchesCodeErrorOfConstantImage) {
   for (const float code : {127.5f, 127.25f, 127.0f, 0.0f, 255.0f}) {
     const std::string value = number_text(double{decode_srgb(code / 255)});
@@ -51,7 +51,8 @@ TEST(DisplayCertificate, MatchesCodeErrorOfFile) {
   EXPECT_EQ(bound.kind, Bound::Kind::proved);
 }
 
-// A filter with negative lobes subtracts in some pixels, which offsets nothing in others.
+// A filter with negative lobes subtracts light in some pixels. This must not offset the light clamped in
+// other pixels.
 TEST(DisplayCertificate, BoundsClampUnderNegativeFilterLobes) {
   const auto scene = load(sample("cornell-box"));
   for (const Filter filter : {Filter::box, Filter::lanczos}) {

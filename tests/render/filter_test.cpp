@@ -6,7 +6,7 @@
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 
-// Tests images through pixel filters.
+// Tests images rendered with each pixel filter.
 namespace orrery::test {
 namespace {
 
@@ -19,7 +19,6 @@ RenderRequest filtered(Filter filter, int samples, RenderRequest request, const 
 constexpr std::array kAll{Filter::box, Filter::gaussian, Filter::blackman_harris, Filter::mitchell,
                           Filter::lanczos};
 
-// The background is constant.
 TEST(Filters, KeepsConstantImage) {
   covers("light-46");
   const Json scene =
@@ -57,7 +56,7 @@ double height(Filter filter, double x) {
   return 0;
 }
 
-// The edge of a half plane shows as the integral of the filter, which rings for negative lobes.
+// The edge of a half plane is the integral of the filter. It rings for filters with negative lobes.
 TEST(Filters, ShowsEdgeAsFilterIntegral) {
   covers("light-46");
   Json scene = scene_of(
@@ -81,7 +80,7 @@ TEST(Filters, ShowsEdgeAsFilterIntegral) {
   }
 }
 
-// Passes, threads and scale do not change the image. A single sample of Whitted's technique lies at the pixel
+// Passes, threads and scale do not change the image. A single sample of Whitted's technique is at the pixel
 // centre.
 TEST(Filters, IsIndependentOfThreadsAndScale) {
   const Json own = sample("cornell-box");

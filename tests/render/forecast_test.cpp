@@ -1,4 +1,4 @@
-// Compares forecasts of images with their renders.
+// Compares forecasts of renders with the renders.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ Forecast extrapolated(const std::shared_ptr<const Scene>& scene, const RenderReq
   return forecast(prepared, settle(prepared, make_plan(*scene, request)), pool, control);
 }
 
-// Passes double the samples, so a forecast may miss by one pass. Rays are compared per sample.
+// Each pass doubles the samples, so a forecast may differ by one pass. Ray counts are compared per sample.
 TEST(Forecast, PredictsSamplesAndRaysOfErrorBudget) {
   for (const char* name : {"paper", "glass", "cornell-box", "sphereflake-2"})
     for (const double error : {0.05, 0.02}) {
@@ -62,11 +62,11 @@ TEST(Forecast, PredictsRaysAndErrorOfFixedSamples) {
     const RenderResult one = test::rendered(scene, r);
     EXPECT_NEAR(single.rays / static_cast<double>(one.stats.counts.rays.total()), 1, 0.15) << name;
     EXPECT_TRUE(std::isfinite(single.seconds)) << name;
-    EXPECT_FALSE(single.certificate.estimate) << "one sample tells no error";
+    EXPECT_FALSE(single.certificate.estimate) << "one sample gives no error estimate";
   }
 }
 
-// A budget of twice the time may have about twice the samples. The client's clock stands still.
+// Doubling the time budget roughly doubles the samples. The clock of the test does not advance.
 TEST(Forecast, FillsTimeBudget) {
   const auto scene = load(sample("cornell-box"));
   RenderRequest r = square();
@@ -77,7 +77,7 @@ TEST(Forecast, FillsTimeBudget) {
   EXPECT_TRUE(told.outcome.met());
 }
 
-TEST(Forecast, DependsOnThePlanAlone) {
+TEST(Forecast, DependsOnPlanOnly) {
   WorkerPool one(1);
   for (const char* name : {"glass", "cornell-box"}) {
     const auto scene = load(sample(name));
@@ -90,7 +90,7 @@ TEST(Forecast, DependsOnThePlanAlone) {
   }
 }
 
-// The budget's limits on rays and time do not apply. (The service rejects such requests.)
+// With a fixed sample count, limits on rays and time do not apply. The service rejects such requests.
 TEST(Forecast, IgnoresLimitsForFixedSamples) {
   RenderRequest r = square();
   r.samples = 4096;
@@ -99,7 +99,7 @@ TEST(Forecast, IgnoresLimitsForFixedSamples) {
   EXPECT_EQ(told.outcome.settings.samples, 4096);
 }
 
-// At this size only tiles are traced, and blocks miss all three omitted rays.
+// The three omitted rays of this image are outside of the pilot's blocks, but in its tiles.
 TEST(Forecast, ReportsOmissionsSeenOnlyInTiles) {
   const auto scene = load(sample("orrery"));
   RenderRequest r = test::size(128, 128);
@@ -121,7 +121,7 @@ TEST(Forecast, PredictsMissedBudget) {
   EXPECT_GT(*told.min_error, 1e-6);
 }
 
-// The pilot is the whole image, or the image is smaller than a block.
+// The pilot renders the whole image, or the image is smaller than a block.
 TEST(Forecast, SupportsSmallestImages) {
   for (const int side : {1, 3, 33}) {
     RenderRequest r = square();

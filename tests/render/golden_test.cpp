@@ -39,13 +39,13 @@ TEST_P(Golden, MatchesStoredImage) {
   const fs::path file = fs::path("tests/golden") / (GetParam() + ".png");
   const Image now = picture_of(GetParam());
   if (std::getenv("ORRERY_UPDATE_GOLDEN")) {
-    ASSERT_FALSE(std::getenv("CI")) << "continuous integration compares pictures, it does not replace them";
+    ASSERT_FALSE(std::getenv("CI")) << "stored images must not be replaced in CI";
     fs::create_directories(file.parent_path());
     std::ofstream(file, std::ios::binary) << encode_png(now, {.level = 9});
-    GTEST_SKIP() << "written anew: " << file;
+    GTEST_SKIP() << "replaced " << file;
   }
   const std::string bytes = read(file);
-  ASSERT_FALSE(bytes.empty()) << file << " is missing: see the head of this test";
+  ASSERT_FALSE(bytes.empty()) << "cannot read " << file << ": see the comment in this test";
   const Image then = decode_image(std::as_bytes(std::span(bytes)));
   ASSERT_EQ(then.width(), now.width());
   ASSERT_EQ(then.height(), now.height());
@@ -55,7 +55,7 @@ TEST_P(Golden, MatchesStoredImage) {
     differing += difference > 0;
     largest = std::max(largest, difference);
   }
-  EXPECT_EQ(differing, 0) << "bytes differ, by " << largest << " at most";
+  EXPECT_EQ(differing, 0) << "bytes differ, by up to " << largest;
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Golden,

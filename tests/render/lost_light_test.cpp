@@ -1,4 +1,4 @@
-// Tests reports of light that a technique does not follow, or that paths cannot find.
+// Tests the report of light that a technique does not follow or that paths cannot find.
 #include <gtest/gtest.h>
 
 #include "tests/support/covers.h"
@@ -7,7 +7,8 @@
 namespace orrery::test {
 namespace {
 
-// Returns the light not followed by `technique` from a glass ball over a floor with these objects and lights.
+// Returns the kinds of light that `technique` does not follow in a scene of a glass ball over a floor with
+// the given objects and lights.
 std::vector<const char*> not_followed(const char* technique, const std::string& objects,
                                       const std::string& lights) {
   const auto scene = load(

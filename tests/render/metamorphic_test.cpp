@@ -8,11 +8,12 @@
 #include "tests/support/random.h"
 #include "tests/support/shapes.h"
 
-// Tests changes that must not affect an image, for every scene of scenes/ and for random ones.
+// Tests changes of scene or request that must not affect the image, with every scene of scenes/ and with
+// random scenes.
 namespace orrery::test {
 namespace {
 
-// Sanitizers need fewer pixels.
+// Returns a request for a small image, smaller with sanitizers.
 RenderRequest small(int samples = 1) {
   RenderRequest request = reduced() ? size(64, 48) : size(160, 120);
   request.samples = samples;
@@ -91,7 +92,7 @@ TEST_P(EveryScene, IsIndependentOfShadowPrediction) {
   }
 }
 
-// Lengths are scaled by 2^17 and 2^-17, with equal irradiance: no constant of the program is a length.
+// Lengths are scaled by 2^17 and 2^-17 at equal irradiance, so the renderer may contain no absolute length.
 TEST_P(EveryScene, IsScaleInvariant) {
   covers("A19");
   const Json scene = without_filters(sample(GetParam()));
@@ -101,21 +102,19 @@ TEST_P(EveryScene, IsScaleInvariant) {
       EXPECT_TRUE(identical(expected, render(scaled(scene, factor), request))) << factor;
   }
   const Picture planned = render(scene, small());
-  EXPECT_TRUE(identical(planned, render(scaled(scene, 0x1p17), small())))
-      << "the plan itself depends on the scale";
-  EXPECT_TRUE(identical(planned, render(scaled(scene, 0x1p-17), small())))
-      << "the plan itself depends on the scale";
+  EXPECT_TRUE(identical(planned, render(scaled(scene, 0x1p17), small()))) << "the plan depends on the scale";
+  EXPECT_TRUE(identical(planned, render(scaled(scene, 0x1p-17), small()))) << "the plan depends on the scale";
 }
 
-// Float may decide an edge differently from double, and curved mirrors multiply edges. On 820 mirrored balls,
-// 40 pixels of 19,200 differ by more than 1/512, in most scenes none.
+// Float and double may differ at an edge, and curved mirrors multiply edges. In most scenes no pixel differs
+// by more than 1/512. With 820 mirrored balls, 40 of 19,200 do.
 TEST_P(EveryScene, AgreesInFloatAndDouble) {
   const Picture single = render(scene_, in_float(small())), exact = render(scene_, in_double(small()));
   EXPECT_LE(differing_pixels(single, exact, 1.0 / 512), 160 * 120 / 200);
   double off = 0;
   for (float Vec3f::*channel : {&Vec3f::x, &Vec3f::y, &Vec3f::z})
     off = std::max(off, std::abs(single.sum(channel) - exact.sum(channel)));
-  EXPECT_LE(off / (160 * 120), 1.0 / 512) << "mean of the picture";
+  EXPECT_LE(off / (160 * 120), 1.0 / 512) << "mean of the image";
 }
 
 // Ray casting equals Whitted's technique at depth 0.
@@ -145,7 +144,7 @@ TEST_P(EveryScene, CountsPlausibleRays) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene, testing::ValuesIn(sample_names()), parameter_name);
 
-// Returns a scene of random shapes, materials and lights. The eye may be anywhere, also inside of a shape.
+// Returns a scene of random shapes, materials and lights. The eye may be inside a shape.
 Json random_scene(std::uint64_t seed) {
   Random random(seed);
   const auto color = [&] { return numbers(Vec3d(random.unit(), random.unit(), random.unit())); };
@@ -161,7 +160,7 @@ Json random_scene(std::uint64_t seed) {
                     {"ior", random.between(0.6, 2.5)},
                     {"fresnel", random.below(2) ? "exact" : "schlick"}};
   if (random.below(2)) materials["d"]["filter"] = color();
-  const int kinds = random.below(15) + 1;  // bit set of the four in use
+  const int kinds = random.below(15) + 1;  // bit set of the used materials, of four
   std::vector<std::string> used;
   for (int i = 0; i < 4; ++i)
     if (kinds >> i & 1) used.push_back(std::string(1, static_cast<char>('a' + i)));

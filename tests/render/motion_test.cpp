@@ -17,7 +17,7 @@ RenderRequest at_time(double time, RenderRequest request = size(96, 72)) {
   return request;
 }
 
-// Returns a plate whose middle rises, and a peg that turns, moves and grows.
+// Returns a plate whose middle rises, and a peg that rotates, moves and grows.
 Json moving_scene() {
   return scene_of(
       R"([{'type': 'plane', 'point': [0, -1, 0], 'normal': [0, 1, 0]},
@@ -33,7 +33,7 @@ Json moving_scene() {
                                     {'time': 4, 'scale': [2, 1, 1], 'degrees': 700}]}]})");
 }
 
-// Returns the same scene at 2.5 s, at rest.
+// Returns the same scene without motion, as it is at 2.5 s.
 Json standing_scene() {
   Json scene = moving_scene();
   Json& mesh = scene["objects"][1];
@@ -50,7 +50,7 @@ Json standing_scene() {
   return scene;
 }
 
-TEST(Motion, MatchesStaticSceneAtEachMoment) {
+TEST(Motion, MatchesStaticSceneAtEachTime) {
   covers("F19");
   const auto moving = load(moving_scene());
   for (const RenderRequest& in : {in_float(size(96, 72)), in_double(size(96, 72))}) {
@@ -60,7 +60,7 @@ TEST(Motion, MatchesStaticSceneAtEachMoment) {
   }
 }
 
-TEST(Motion, IsIndependentOfEarlierMoments) {
+TEST(Motion, IsIndependentOfEarlierTimes) {
   covers("F19");
   const auto scene = load(moving_scene());
   for (const auto& type : accelerator_types()) {
@@ -81,7 +81,7 @@ TEST(Motion, IsIndependentOfEarlierMoments) {
   }
 }
 
-TEST(Motion, RestsOutsideKeyframes) {
+TEST(Motion, StopsOutsideKeyframes) {
   const auto scene = load(moving_scene());
   EXPECT_EQ(scene->motion.first, 0);
   EXPECT_EQ(scene->motion.last, 4);
@@ -101,19 +101,19 @@ TEST(Motion, WrapsTimeInLoop) {
   EXPECT_EQ(none.moment_of_loop(7), 0);
 }
 
-TEST(Motion, PlansForEveryMoment) {
+TEST(Motion, PlansForAllTimesTogether) {
   Json far = moving_scene();
   far["instances"][0]["motion"][1]["translate"] = {3e7, 0, 0};
   EXPECT_FALSE(make_plan(*load(moving_scene()), at_time(0)).double_precision);
   EXPECT_TRUE(make_plan(*load(far), at_time(0)).double_precision)
-      << "so that frames do not change number types";
+      << "all frames must have the same number type";
   Json stretched = moving_scene();
   stretched["objects"][1]["motion"][2]["positions"][0] = {-3e7, 0, 0};
   EXPECT_TRUE(make_plan(*load(stretched), at_time(0)).double_precision);
 }
 
-// Returns a smooth or flat dome in the shadow of a ball. One petal grows from zero area, and a distant vertex
-// is unused.
+// Returns a smooth or flat dome in the shadow of a ball. One triangle grows from zero area, and a distant
+// vertex is unused.
 Json dome(double petal, bool moving, bool smooth) {
   Json mesh = {{"type", "mesh"}};
   if (smooth) mesh["crease_degrees"] = 180;
@@ -148,7 +148,8 @@ TEST(Motion, IgnoresDegenerateTrianglesAndUnusedVertices) {
   EXPECT_FALSE(make_plan(*load(dome(0, true, false)), at_time(0)).double_precision);
 }
 
-// Two halves of a roof close like a book, and open again along the ridge.
+// The two halves of a roof move together and then separate along the ridge. Coincident vertices are smoothed
+// together while the ridge is closed.
 TEST(Motion, SmoothsCoincidentVerticesTogether) {
   covers("F19");
   const auto roof = [](double lift, double gap) {
@@ -172,7 +173,7 @@ TEST(Motion, SmoothsCoincidentVerticesTogether) {
     EXPECT_TRUE(identical(render(moving, at_time(time)), render(scene(positions), size(96, 72)))) << time;
 }
 
-// All vertices coincide half-way, which must not affect the smoothing groups.
+// All vertices coincide at half the time. This must not affect the smoothing groups.
 TEST(Motion, SupportsMeshCollapsingToPoint) {
   covers("F19");
   Json mesh = {{"type", "mesh"}, {"crease_degrees", 60}}, mirrored = Json::array();
@@ -190,7 +191,7 @@ TEST(Motion, SupportsMeshCollapsingToPoint) {
   EXPECT_GT(render(scene, at_time(0.6)).brighter_than(0.1f), 10);
 }
 
-TEST(Motion, RendersSeveralMomentsConcurrently) {
+TEST(Motion, RendersSeveralTimesConcurrently) {
   const auto scene = load(moving_scene());
   const PreparedScene prepared(scene);
   std::vector<Picture> expected;

@@ -5,7 +5,7 @@
 
 #include "tests/support/pictures.h"
 
-// Tests the ledger of paths, and their range of radiance.
+// Tests the ledger and the radiance range of path tracing.
 namespace orrery::test {
 namespace {
 
@@ -17,7 +17,7 @@ RenderRequest of_paths(int side, int samples) {
   return r;
 }
 
-// Suns are in front of the sky, and two of them may overlap.
+// Suns cover the sky, and two suns may overlap.
 TEST(RadianceRange, CoversSkyWithAllSunsForPaths) {
   const auto scene =
       load(scene_of("[{'type': 'sphere', 'center': [0, 0, 50], 'radius': 1, 'material': 'black'}]",
@@ -35,7 +35,7 @@ TEST(RadianceRange, CoversSkyWithAllSunsForPaths) {
   EXPECT_LE(scene->facts.path_radiance.most.x, 1.01 * brightest);
 }
 
-// Path reuse does not change the omitted part of the image.
+// Path reuse does not change the mean of the omitted light.
 TEST(PathLedger, IsUnchangedByPathReuse) {
   const auto box = load(sample("cornell-box"));
   RenderRequest r = of_paths(64, 16);
@@ -46,7 +46,8 @@ TEST(PathLedger, IsUnchangedByPathReuse) {
   EXPECT_NEAR(rendered(box, r).stats.omitted.mean(), alone, 0.03 * alone);
 }
 
-// A background is light of one reflection, in either form.
+// Light from the background after one reflection is direct light, for a constant background and for a
+// gradient.
 TEST(Clamp, KeepsBackgroundLight) {
   const std::string even =
       "'zenith': [0.8, 0.8, 0.8], 'horizon': [0.8, 0.8, 0.8], 'ground': [0.8, 0.8, 0.8]}";

@@ -6,7 +6,7 @@
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 
-// Tests symmetries of path tracing, without reference values.
+// Tests symmetries of path tracing. They need no reference values.
 namespace orrery::test {
 namespace {
 
@@ -41,7 +41,7 @@ TEST(PathSymmetry, DoublesImageWithDoubledLight) {
 
 constexpr int kSeeds = 8, kBlock = 16, kAcross = 5, kDown = 3;
 
-// Means of pixel blocks, from images of several seeds.
+// Means of pixel blocks over images of several seeds.
 struct Blocks {
   std::array<double, kAcross * kDown> mean{}, variance{};  // variance of the mean
 };
@@ -68,8 +68,8 @@ Blocks blocks_of(const Json& scene, std::uint64_t first_seed, bool from_the_righ
   return blocks;
 }
 
-// Expects differences below 6 standard errors (Welch), with a mean square near (n - 1) / (n - 3) at 2 (n - 1)
-// degrees of freedom.
+// Expects differences below 6 standard errors (Welch). Their mean square must be near (n - 1) / (n - 3), the
+// expectation for 2 (n - 1) degrees of freedom.
 void expect_equal(const Blocks& a, const Blocks& b) {
   double squares = 0;
   for (std::size_t i = 0; i < a.mean.size(); ++i) {
@@ -84,7 +84,8 @@ void expect_equal(const Blocks& a, const Blocks& b) {
   EXPECT_LT(squares, 3.5);
 }
 
-// The order of lights maps the same random numbers to other lights: the noise differs, but not the mean.
+// With another order of lights, the same random numbers select other lights. The noise differs, but not the
+// mean.
 TEST(PathSymmetry, ChangesOnlyNoiseWithLightOrder) {
   covers("R31 light-52");
   const Json scene = sample("lamps");

@@ -5,7 +5,7 @@
 #include "core/model/technique.h"
 #include "tests/support/pictures.h"
 
-// Tests images whose samples are traced in passes.
+// Tests renders whose samples are traced in several passes.
 namespace orrery::test {
 namespace {
 
@@ -16,8 +16,8 @@ RenderRequest of(int samples, const char* technique) {
   return request;
 }
 
-// Images, errors and ray counts are equal bit for bit. With an emission pass, each pass first
-// traces two rays through corners of each pixel.
+// Images and errors are equal bit for bit. With an emission pass, each pass first traces two more rays
+// through the corners of each pixel.
 TEST(ProgressiveRender, MatchesSinglePassRender) {
   for (const char* name : {"paper", "cornell-box", "open-shutter", "depth-of-field", "light-many"}) {
     for (const char* technique : {"whitted", "path", "distributed"}) {

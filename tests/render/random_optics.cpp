@@ -23,8 +23,7 @@ Json matt(Random& random) {
   }
 }
 
-// Returns a specular material. With ambient light, plastic is excluded: its coat does not attenuate ambient
-// light, so the radiance would have no bound.
+// Returns a specular material. Plastic is used only without ambient light.
 Json specular(Random& random, bool ambient) {
   switch (random.below(ambient ? 3 : 4)) {
     case 0:
@@ -55,8 +54,8 @@ Json shape(Random& random) {
   }
 }
 
-// Returns a light with the share `share` of a good exposure: a white surface that faces all lights reads
-// about 1.
+// Returns a light of random intensity, `share` on average. A white surface that faces all lights then has a
+// radiance of about 1 if the sum of their `share` is 1.
 Json light(Random& random, double share) {
   const Json intensity = color(random, 2 * share);
   if (random.below(3) == 0)

@@ -5,9 +5,9 @@
 
 namespace orrery::test {
 
-// Returns a random scene for tests of truncated ray trees. Balls, boxes and tubes are mirrors, glass, filters
-// or matt with highlights, over a plane or a box. It has one to four lights, optional ambient light, and a
-// constant background or a sky.
+// Returns a random scene for tests of truncated ray trees. Balls, boxes and tubes are above a plane or in a
+// box. Their materials are mirrors, glass, filters, and matt surfaces with highlights. The scene has one to
+// four lights, optional ambient light, and a constant background or a sky.
 Json random_optics(Random& random);
 
 }  // namespace orrery::test

@@ -19,8 +19,9 @@ RenderRequest of(int side, int samples, int reuse, std::uint64_t seed) {
   return request;
 }
 
-// Compares with the true error, the mean of half the squared differences between images of other seeds. At
-// edges the halves are not independent, and overestimate by up to a third.
+// Compares the estimate with the true mean squared error, half the mean squared difference between images of
+// different seeds. At edges the halves of the samples are not independent, so the estimate may be up to 1.6
+// times too large.
 TEST(SampledError, MatchesErrorOfImage) {
   covers("light-47 D17");
   constexpr int kSeeds = 12;
@@ -49,8 +50,8 @@ TEST(SampledError, MatchesErrorOfImage) {
   }
 }
 
-// In random scenes, images of other seeds confirm the estimate. Halves may overestimate, up to 1.6 times at
-// edges and up to 4 times for smooth images.
+// In random scenes, the estimate is compared with images of other seeds. It may be up to 1.6 times too large
+// at edges, and up to 4 times in smooth images.
 TEST(SampledError, MatchesErrorOverOtherSeeds) {
   covers("certificate-27");
   Random random(27);
@@ -77,7 +78,7 @@ TEST(SampledError, MatchesErrorOverOtherSeeds) {
   EXPECT_GE(near, told - 2);
 }
 
-// Non-finite pixels are reported separately.
+// Non-finite pixels are reported separately, and the total error is unknown.
 TEST(SampledError, ExcludesNonFinitePixels) {
   covers("certificate-28");
   const auto scene = load(scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]"));
@@ -88,7 +89,7 @@ TEST(SampledError, ExcludesNonFinitePixels) {
   stats.non_finite_pixels = 3;
   const Certificate certificate = certify(plan, stats);
   EXPECT_EQ(certificate.total().kind, Bound::Kind::unknown);
-  EXPECT_EQ(certificate.terms.back().reason, "3 pixels have such a value");
+  EXPECT_EQ(certificate.terms.back().reason, "3 pixels are not finite");
 }
 
 TEST(SampledError, IsKnownOnlyForEvenSampleCounts) {

@@ -22,14 +22,14 @@ Json triangle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   return {{"type", "triangle"}, {"vertices", {numbers(a), numbers(b), numbers(c)}}};
 }
 
-// Adds `count` balls throughout a cube.
+// Adds `count` balls at random places in a cube.
 void add_cloud(Json& objects, int count, const Vec3d& middle, double half) {
   Random random(1);
   for (int i = 0; i < count; ++i)
     objects.push_back(ball(middle + random.in_cube(half), random.between(0.01, 0.04) * half));
 }
 
-// Adds a small and detailed cloud in a wide ring of large triangles.
+// Adds a small, detailed cloud of balls inside a wide ring of large triangles.
 void add_stadium(Json& objects, int count, const Vec3d& middle) {
   add_cloud(objects, count / 2, middle, 0.2);
   for (int i = 0; i < count / 2; ++i) {

@@ -6,7 +6,7 @@
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 
-// Compares images with an open shutter with closed forms.
+// Compares images rendered with an open shutter with closed forms.
 namespace orrery::test {
 namespace {
 
@@ -17,7 +17,8 @@ RenderRequest open_for(double seconds, int samples, RenderRequest request) {
   return request;
 }
 
-// Returns an emissive object under an orthographic camera. Pixels are 1 m, and (0, 0) is the image centre.
+// Returns an emissive object under an orthographic camera. Pixels are 1 m wide, and the origin is at the
+// image centre.
 Json seen_from_above(const Json& object, double pixels) {
   return scene_of(
       "[{'type': 'sphere', 'center': [0, 0, -500], 'radius': 1, 'material': 'white'}]",
@@ -43,8 +44,8 @@ Json square(double side) {
           {"b", {0, side, 0}}};
 }
 
-// A square of side w that moves by v shows as a trapezoid, the share of the time that the square covers a
-// point.
+// A square of side w that moves by v is blurred to a trapezoid: the fraction of the time that the square
+// covers a point.
 TEST(Shutter, BlursMovingSquareToTrapezoid) {
   covers("light-43");
   constexpr int kSide = 64;
@@ -52,7 +53,7 @@ TEST(Shutter, BlursMovingSquareToTrapezoid) {
     const Picture picture =
         render(moving_by(seen_from_above(square(w), kSide), {v, 0, 0}), open_for(1, 256, size(kSide, kSide)));
     for (int x = 0; x < kSide; ++x) {
-      // Mean over the pixel, by fine quadrature.
+      // Mean over the pixel by numerical integration.
       double expected = 0;
       for (int k = 0; k < 1000; ++k) {
         const double at = x - kSide / 2 + (k + 0.5) / 1000;
@@ -69,7 +70,7 @@ TEST(Shutter, BlursMovingSquareToTrapezoid) {
   }
 }
 
-// A moving square that is out of focus has the same sum, and the lens adds its blur.
+// A moving square that is out of focus has the same total radiance, and the lens adds to the blur.
 TEST(Shutter, CombinesMotionAndLensBlur) {
   covers("light-43");
   Json scene = moving_by(seen_from_above(square(8), 64), {20, 0, 0});
@@ -90,8 +91,8 @@ TEST(Shutter, CombinesMotionAndLensBlur) {
   EXPECT_NEAR(moment_y / sum, square_and_pixel + lens, 0.15);
 }
 
-// A disk of diameter d that moves by D > d covers points of its centre line for d / D of the time.
-TEST(Shutter, CoversCentreLineOfMovingDiskEvenly) {
+// A disk of diameter d that moves by D > d covers each point of its centre line for d / D of the time.
+TEST(Shutter, CoversCentreLineOfMovingDiskUniformly) {
   covers("light-44");
   const Json disk = {
       {"type", "disk"}, {"material", "lamp"}, {"center", {0, 0, 0}}, {"normal", {0, 0, 1}}, {"radius", 64}};
@@ -112,7 +113,7 @@ TEST(Shutter, BlursMovingMeshLikeMovingInstance) {
   const auto corners = [](double x) {
     return Json{{x - 4, -4, 0}, {x + 4, -4, 0}, {x + 4, 4, 0}, {x - 4, 4, 0}};
   };
-  // A keyframe within the exposure, on the straight path.
+  // The keyframe within the exposure is on the straight path.
   scene["objects"].push_back({{"type", "mesh"},
                               {"material", "lamp"},
                               {"positions", corners(-10)},
@@ -127,8 +128,8 @@ TEST(Shutter, BlursMovingMeshLikeMovingInstance) {
   EXPECT_LT(largest_difference(mesh, instance), 1e-5);
 }
 
-// A moving lamp gives the mean over time of its light from each position. A sphere of radius r and radiance 1
-// gives a floor h below pi r^2 h / d^3.
+// The light of a moving lamp is the mean over time of the light from each position. A sphere of radius r and
+// radiance 1 causes an irradiance of pi r^2 h / d^3 on a floor at distance h below it.
 TEST(Shutter, AveragesLightOfMovingLamp) {
   covers("light-45");
   const double r = 0.5, h = 2, way = 6;
@@ -151,7 +152,7 @@ TEST(Shutter, AveragesLightOfMovingLamp) {
   EXPECT_NEAR(mean / expected, 1, 0.01);
 }
 
-// A ball moves between a directional light and the floor. The shadow is that of a moving disk.
+// A ball moves between a directional light and the floor. Its shadow is that of a moving disk.
 TEST(Shutter, CastsShadowsAtTimeOfRay) {
   covers("light-45");
   const Json ball = {{"type", "sphere"}, {"material", "white"}, {"center", {0, 0, 5}}, {"radius", 4}};
@@ -159,16 +160,16 @@ TEST(Shutter, CastsShadowsAtTimeOfRay) {
   scene["materials"]["white"] = {{"type", "lambert"}, {"reflectance", 1}};
   scene["objects"] = {
       {{"type", "plane"}, {"point", {0, 0, 0}}, {"normal", {0, 0, 1}}, {"material", "white"}}};
-  scene["lights"] = {
-      {{"type", "directional"}, {"direction_to_light", {0, 1, 1}}}};  // the shadow falls 5 m below the ball
+  scene["lights"] = {// Offset of the shadow: 5 m in the image.
+                     {{"type", "directional"}, {"direction_to_light", {0, 1, 1}}}};
   for (const char* technique : {"whitted", "distributed", "path"}) {
     RenderRequest request = open_for(1, 64, size(64, 64));
     request.technique = technique;
     request.max_depth = 1;
     const Picture picture = render(scene, request);
     const double lit = double{picture.at(2, 2).x};
-    // Along the shadow's centre line, away from its ends: sqrt(2) r across in the light's direction, 2 r
-    // along.
+    // Mean along the centre line of the shadow, away from its ends. The shadow is sqrt(2) r wide in the
+    // light's direction and 2 r along the motion.
     double mean = 0;
     for (int x = 30; x < 34; ++x) mean += double{picture.at(x, 32 + 5).x} / 4;
     EXPECT_NEAR(mean / lit, 1 - 8.0 / 20, 0.02) << technique;
@@ -187,7 +188,7 @@ Json spinning() {
                          'motion': [{'time': 0, 'degrees': -20}, {'time': 4, 'scale': [2, 1, 1], 'degrees': 700}]}]})");
 }
 
-// The mean of many instants, each with its own time, equals one image with an open shutter.
+// The mean of images at many instants equals one image with an open shutter.
 TEST(Shutter, AveragesInstants) {
   const auto scene = load(spinning());
   constexpr int kInstants = 64;
@@ -240,7 +241,7 @@ TEST(Shutter, ChangesNothingWithoutMotion) {
   }
 }
 
-// Threads, slices and structures do not change the image, nor does scaling the scene.
+// Neither threads, slices and structures nor scaling the scene change the image.
 TEST(Shutter, IsIndependentOfThreadsStructuresAndScale) {
   const Json own = spinning();
   const auto scene = load(own);
@@ -268,8 +269,8 @@ TEST(Shutter, IsIndependentOfThreadsStructuresAndScale) {
   }
 }
 
-// A turning object does not shade itself: under a uniform sky it is as bright as at rest.
-TEST(Shutter, AvoidsSelfShadowingOfTurningObjects) {
+// A rotating object does not shadow itself. Under a uniform sky it is as bright as a static object.
+TEST(Shutter, AvoidsSelfShadowingOfRotatingObjects) {
   Json scene = scene_of("[{'type': 'sphere', 'center': [0, -300, 0], 'radius': 1}]",
                         R"({'background': [1, 1, 1], 'camera': {'eye': [7, 5, 9], 'look_at': [7, 5, 5]},
           'materials': {'chalk': {'type': 'lambert', 'reflectance': 0.5}},
@@ -283,8 +284,8 @@ TEST(Shutter, AvoidsSelfShadowingOfTurningObjects) {
     request.max_depth = 6;
     return request;
   }());
-  // These convex bodies exchange little light. A pixel of one body has at least half the sky's radiance,
-  // except for occlusion by the other.
+  // These two convex bodies exchange little light. Each pixel of a body has at least half the sky's radiance,
+  // unless the other body occludes the sky.
   float darkest = 1;
   for (const Vec3f& pixel : picture.pixels) darkest = std::min(darkest, pixel.x);
   EXPECT_GT(darkest, 0.4f);

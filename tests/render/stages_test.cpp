@@ -62,8 +62,8 @@ TEST(OcclusionSamples, LimitsSampleCount) {
   EXPECT_GE(samples.size(), 8'192u);
 }
 
-// A floor seen from above has equal numbers of samples in its upper and lower half, although half of the
-// early ones were dropped.
+// For a floor seen from above, the upper and lower half of the image give equal numbers of samples. Half of
+// the early samples are dropped.
 TEST(OcclusionSamples, CoversImageEvenly) {
   const Json floor = scene_of(
       R"([{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]},
@@ -98,7 +98,7 @@ TEST(Stages, CountsPredictedAndVerifiedOccluders) {
       0u);
 }
 
-TEST(Stages, VerifiesMoreNetworkPredictionsThanRandom) {
+TEST(Stages, VerifiesMorePredictionsOfNetworkThanRandom) {
   const auto share = [](Prediction prediction) {
     const AcceleratorCounts counts = render(sample("paper"), asking(prediction)).stats.counts.accelerator;
     return static_cast<double>(counts.verified_occluders) / static_cast<double>(counts.predicted_occluders);
@@ -106,7 +106,7 @@ TEST(Stages, VerifiesMoreNetworkPredictionsThanRandom) {
   EXPECT_GT(share(Prediction::network), 1.5 * share(Prediction::random));
 }
 
-// Samples, network and counts are the same for any number of threads.
+// Training samples, network and counts are the same for any number of threads.
 TEST(Stages, CountsDeterministically) {
   for (const Prediction prediction : {Prediction::network, Prediction::last, Prediction::random}) {
     const auto counts = [&](int threads) {

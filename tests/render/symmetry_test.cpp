@@ -7,7 +7,7 @@
 #include "tests/support/pictures.h"
 #include "tests/support/tracing.h"
 
-// Tests symmetries without reference values: linearity, mirroring, rotation, and invisible objects.
+// Tests symmetries that need no reference values: linearity, mirroring, rotation and invisible objects.
 namespace orrery::test {
 namespace {
 
@@ -105,8 +105,8 @@ TEST(Symmetry, IgnoresTriangleSplitting) {
   EXPECT_LE(largest_difference(trace_picture(whole, small()), trace_picture(split, small())), 1e-12);
 }
 
-// Returns a ball inside the first opaque body of a scene, which light cannot reach. Returns null if the scene
-// has no such body.
+// Returns a ball inside the first opaque body of a scene, where no light can reach it. Returns null if the
+// scene has no such body.
 Json hidden_ball(const Json& scene) {
   const auto ball = [&scene](const Vec3d& center, double radius) {
     return Json{{"type", "sphere"},
@@ -131,7 +131,7 @@ TEST(Symmetry, IgnoresHiddenObjects) {
     Json scene = sample(name);
     const Picture expected = render(scene, small());
     const Json ball = hidden_ball(scene);
-    ASSERT_TRUE(ball.is_object()) << name << " has no opaque body to hide a ball in";
+    ASSERT_TRUE(ball.is_object()) << name << " has no opaque body";
     scene["objects"].push_back(ball);
     EXPECT_TRUE(identical(expected, render(scene, small()))) << name;
   }
@@ -147,7 +147,7 @@ TEST(Symmetry, IsTranslationInvariant) {
   }
 }
 
-// Compares the pole with a view a billionth of a degree away.
+// Compares the view at each pole with the view at a billionth of a degree from it.
 TEST(Symmetry, IsContinuousAtOrbitPoles) {
   covers("E8");
   const Json scene =

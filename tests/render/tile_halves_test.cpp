@@ -9,7 +9,7 @@
 #include "core/image/srgb.h"
 #include "tests/support/random.h"
 
-// Compares the statistics of one tile with their definition, pixel by pixel.
+// Compares the statistics of one tile with their definition, computed pixel by pixel.
 namespace orrery::test {
 namespace {
 
@@ -19,7 +19,7 @@ struct Sums {
   std::array<TileSums::Plane, 3> first, all;
 };
 
-// Returns sums of samples up to 2, above a display's range, with one NaN.
+// Returns sums of samples with values up to 2, above the display range, and one NaN.
 std::unique_ptr<Sums> random_sums(std::uint64_t seed) {
   Random random(seed);
   auto sums = std::make_unique<Sums>();
@@ -38,7 +38,8 @@ class TileHalvesTest : public ::testing::TestWithParam<std::pair<int, int>> {
   const std::unique_ptr<Sums> sums_ = random_sums(static_cast<std::uint64_t>(tile_.width));
   const TileHalves halves_{tile_, sums_->first, sums_->all, kSamples};
 
-  // Calls visit(slot, channel, mean of the first half, mean of the second) for pixels of the image.
+  // Calls visit(slot, channel, mean of the first half, mean of the second half) for each pixel of the tile
+  // that is in the image.
   template <class Visit>
   void for_each_value(const Visit& visit) const {
     for (int slot = 0; slot < kBatch; ++slot) {

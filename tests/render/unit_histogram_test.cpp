@@ -21,7 +21,7 @@ UnitHistogram draw(int count, const Draw& value) {
   return all;
 }
 
-// Without any event, the bound on the mean is at most 2.5 times the rule of three, 1 - delta^(1/n).
+// If all values are 0, the bound on the mean is at most 2.5 times the rule of three, 1 - delta^(1/n).
 TEST(UpperMean, FollowsRuleOfThreeWithoutEvents) {
   for (const int count : {100, 1000, 60000}) {
     const double bound = draw(count, [] { return 0.0; }).upper_mean(0.05);
@@ -41,7 +41,7 @@ TEST(UpperMean, StaysCloseToEqualValues) {
   EXPECT_EQ(draw(50, [] { return 1.0; }).upper_mean(0.05), 1);
 }
 
-// A bin stores only its sum, so its values count as equal.
+// A bin stores only count and sum, so all of its values count as equal.
 TEST(UnitHistogram, ScalesCountsAndValues) {
   Random random(3);
   const UnitHistogram all = draw(500, [&] { return random.unit(); }), more = all.scaled(64, 0.25);
@@ -51,13 +51,13 @@ TEST(UnitHistogram, ScalesCountsAndValues) {
   EXPECT_NEAR(more.upper_mean(0.05) / drawn.upper_mean(0.05), 1, 0.05);
 }
 
-// Most runs see none of the few large values.
-TEST(UpperMean, HoldsForRareErrors) {
+// Most runs do not contain any of the few large values.
+TEST(UpperMean, BoundsMeanOfRareErrors) {
   covers("certificate-26");
   EXPECT_LE(stability_row("certificate-26").measure().ours, 5);
 }
 
-TEST(UpperMean, HoldsForOtherDistributions) {
+TEST(UpperMean, BoundsMeanOfOtherDistributions) {
   Random random(2);
   const auto holds = [&](double mean, const auto& value) {
     int held = 0;

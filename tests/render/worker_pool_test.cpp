@@ -18,7 +18,7 @@ namespace {
 
 constexpr bool kForeground = false;
 
-// Yields until `done`, for at most a minute. Returns `done`.
+// Yields the thread until `done`, for at most a minute. Returns `done`.
 bool give_way_until(const std::atomic<bool>& done, TimeSlice& turn) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
   while (!done && std::chrono::steady_clock::now() < end) turn.yield();
@@ -66,7 +66,7 @@ TEST(WorkerPool, RunsOthersWhileLongStepYields) {
   }
 }
 
-// The step never yields.
+// Only the long step's own end frees its thread.
 TEST(WorkerPool, RunsOthersDuringNonYieldingStep) {
   for (const int threads : {1, 2}) {
     WorkerPool pool(threads);
@@ -76,7 +76,7 @@ TEST(WorkerPool, RunsOthersDuringNonYieldingStep) {
       pool.for_each(2 * threads, kForeground, [&](int, int, TimeSlice& turn) {
         ++begun;
         EXPECT_TRUE(test::eventually([&] { return done.load(); }));
-        turn.yield();  // continues, although it lost its slot
+        turn.yield();  // continues although its thread was replaced
         return true;
       });
     });
@@ -105,7 +105,7 @@ TEST(WorkerPool, RunsLoopsDuringLongTask) {
   EXPECT_TRUE(test::eventually([&] { return seen.load(); }));
 }
 
-TEST(WorkerPool, ResumesYieldedStepsInTurn) {
+TEST(WorkerPool, ResumesYieldedStepsRoundRobin) {
   constexpr int kLoops = 6;
   WorkerPool pool(2);
   std::atomic<int> present = 0, running = 0;
@@ -116,7 +116,7 @@ TEST(WorkerPool, ResumesYieldedStepsInTurn) {
       pool.for_each(2, kForeground, [&](int, int, TimeSlice& turn) {
         if (++present == 2 * kLoops) all_present = true;
         if (!give_way_until(all_present, turn)) seen = false;
-        EXPECT_LE(++running, 2);  // as many as there are threads, however many yielded
+        EXPECT_LE(++running, 2);  // at most one step per thread, even after yields
         --running;
         return true;
       });
@@ -125,7 +125,7 @@ TEST(WorkerPool, ResumesYieldedStepsInTurn) {
   EXPECT_TRUE(seen) << present;
 }
 
-// Lease that expires once, and is renewed on request.
+// Lease that expires once. renew() blocks until the test releases `give_back`.
 struct OneLease final : SlotLease {
   bool expired() const override { return !asked.exchange(true); }
   void renew() override {
@@ -154,8 +154,8 @@ TEST(WorkerPool, RunsNoStepDuringLeaseRenewal) {
         &lease);
   });
   EXPECT_TRUE(test::eventually([&] { return lease.paused.load(); }));
-  // Running steps yield at the end of their time slices. After that nothing continues, though the pool is
-  // free.
+  // Running steps yield at the end of their time slices. After that no step continues, although the pool is
+  // idle.
   EXPECT_TRUE(test::eventually([&] {
     const std::uint64_t before = progress;
     pool.for_each(20, kForeground, [](int, int, TimeSlice&) { return true; });

@@ -58,5 +58,5 @@ for scene in scenes/*.json; do
   compare "$scene" exr --samples 5 --azimuth 33 --elevation 12 --distance 1.2 --seed 7
   compare "$scene" png --technique raycast --time 0.4
 done
-echo "$pictures pictures compared with $(git rev-parse --short "$revision"), $different different"
+echo "$pictures images compared with $(git rev-parse --short "$revision"), $different different"
 [ $different -eq 0 ]

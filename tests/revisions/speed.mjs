@@ -6,12 +6,12 @@
 import { execFileSync } from "node:child_process";
 import { existsSync, mkdirSync } from "node:fs";
 import { spawn } from "node:child_process";
-import { FrameReader, cpu_seconds, post_scene, send } from "../bench/daemon.mjs";
-import { start_two_sided } from "../bench/two_sided.mjs";
+import { FrameReader, cpuSeconds, postScene, send } from "../bench/daemon.mjs";
+import { startTwoSided } from "../bench/two_sided.mjs";
 
-const kFlake = "build/bench-scenes/sphereflake.json"; // 7,381 spheres
+const FLAKE = "build/bench-scenes/sphereflake.json"; // 7,381 spheres
 
-function arguments_of(words) {
+function argumentsOf(words) {
   const [name, ...rest] = words;
   const options = { rounds: "7", only: "" };
   for (let i = 0; i < rest.length; i += 2) options[rest[i].replace("--", "")] = rest[i + 1];
@@ -27,7 +27,7 @@ const render = (scene, side, more) => (build) => {
 };
 
 // Returns CPU seconds of a service that streams an orbit.
-const orbit_http = (frames) => async (build) => {
+const orbitHttp = (frames) => async (build) => {
   const child = spawn(`${build}/orrery`, ["serve", "--port", "0", "--health-port", "0", "--threads", "2", "--quiet"], {
     stdio: ["ignore", "pipe", "ignore"],
   });
@@ -39,33 +39,33 @@ const orbit_http = (frames) => async (build) => {
         const match = /http:\/\/\S+:(\d+)/.exec(text);
         if (match) resolve(Number(match[1]));
       });
-      child.once("close", () => reject(new Error(`${build}/orrery serve ended`)));
+      child.once("close", () => reject(new Error(`${build}/orrery serve exited`)));
     });
-    const id = await post_scene(port, "scenes/paper.json");
-    const before = cpu_seconds(child.pid);
+    const id = await postScene(port, "scenes/paper.json");
+    const before = cpuSeconds(child.pid);
     const response = await send(port, "GET", `/v1/scenes/${id}/orbit?frames=${frames}&fps=0`, {
       Accept: "application/x-orrery-frames",
     });
     let seen = 0;
     const reader = new FrameReader(() => ++seen);
     for await (const chunk of response) reader.add(chunk);
-    if (seen !== frames) throw new Error(`${seen} of ${frames} frames came`);
-    return cpu_seconds(child.pid) - before;
+    if (seen !== frames) throw new Error(`received ${seen} of ${frames} frames`);
+    return cpuSeconds(child.pid) - before;
   } finally {
     child.kill("SIGTERM");
   }
 };
 
-// Times one Embree comparison. A process per side holds the mesh. Requires both revisions' build/bench to
+// Times one Embree comparison. One process per build keeps the mesh. Requires both revisions' build/bench to
 // have the subject.
-function embree_row(subject, place, triangles, kind) {
+function embreeRow(subject, place, triangles, kind) {
   const sides = new Map();
   return {
     name: `embree-${subject}-${place}-${triangles / 1000}k-${kind}`,
     async run(build) {
       if (!sides.has(build))
-        sides.set(build, await start_two_sided(`${build}/bench`, [subject, String(triangles), place, "default"]));
-      return (await sides.get(build).ours(kind)).cpu_s;
+        sides.set(build, await startTwoSided(`${build}/bench`, [subject, String(triangles), place, "default"]));
+      return (await sides.get(build).ours(kind)).cpuS;
     },
     async stop() {
       for (const side of sides.values()) await side.stop();
@@ -75,29 +75,29 @@ function embree_row(subject, place, triangles, kind) {
 
 function rows() {
   mkdirSync("build/bench-scenes", { recursive: true });
-  if (!existsSync(kFlake)) execFileSync("node", ["scenes/generate-sphereflake.mjs", "4", kFlake]);
+  if (!existsSync(FLAKE)) execFileSync("node", ["scenes/generate-sphereflake.mjs", "4", FLAKE]);
   const plain = (name, run) => ({ name, run, stop: async () => {} });
   const embree = [70_000, 1_000_000].flatMap((triangles) =>
     ["ball", "cad"].flatMap((subject) =>
       ["open", "room"].flatMap((place) =>
-        ["primary", "bounce", "short", "build"].map((kind) => embree_row(subject, place, triangles, kind)),
+        ["primary", "bounce", "short", "build"].map((kind) => embreeRow(subject, place, triangles, kind)),
       ),
     ),
   );
   return [
     plain("paper", render("scenes/paper.json", 1500, ["--depth", 5])),
     plain("paper-64-samples", render("scenes/paper.json", 200, ["--samples", 64])),
-    plain("flake", render(kFlake, 700, ["--depth", 5])),
+    plain("flake", render(FLAKE, 700, ["--depth", 5])),
     plain("instances", render("scenes/instances.json", 700, [])),
     plain("double", render("scenes/glass.json", 500, ["--precision", "double"])),
-    plain("orbit-http", orbit_http(60)),
+    plain("orbit-http", orbitHttp(60)),
     ...embree,
   ];
 }
 
 const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
 
-const { theirs, rounds, only } = arguments_of(process.argv.slice(2));
+const { theirs, rounds, only } = argumentsOf(process.argv.slice(2));
 console.log("CPU seconds of theirs over ours, medians of interleaved runs: above 1 this tree is faster\n");
 for (const row of rows().filter(({ name }) => name.includes(only))) {
   const times = { build: [], [theirs]: [] };

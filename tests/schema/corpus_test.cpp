@@ -8,8 +8,8 @@
 #include "core/base/error.h"
 #include "core/load/load.h"
 
-// Compares the loader with the corpus: expectations.json names the place of the first problem of every bad
-// scene. schema.test.mjs compares the schema with the same files, so schema and loader agree.
+// Compares the loader with the corpus. expectations.json contains the JSON pointer of the first problem in
+// each bad scene. schema.test.mjs compares the schema with the same files, so schema and loader agree.
 
 namespace orrery {
 namespace {

@@ -26,7 +26,7 @@ Crossing crossing(const Target<T>& shape, const Ray<double>& ray) {
   return {static_cast<double>(first.t), middle + static_cast<double>(second.t)};
 }
 
-// The roots are (-B -+ sqrt D) / (2 A). With A != 1, a missing pair of brackets shows.
+// The roots are (-B -+ sqrt D) / (2 A). With A != 1, the results would differ if only sqrt D were divided.
 TEST(Cylinder, DividesRootsByTwiceA) {
   covers("A7");
   const auto check = [](const Ray<double>& ray, double enter, double leave) {
@@ -34,7 +34,8 @@ TEST(Cylinder, DividesRootsByTwiceA) {
     EXPECT_NEAR(d.enter, enter, 1e-12 * leave);
     EXPECT_NEAR(d.leave, leave, 1e-12 * leave);
     const Crossing f = crossing(Target<float>::of_objects(kEndless), ray);
-    EXPECT_NEAR(f.enter, enter, 1e-5 * leave);  // the direction alone is off by 6e-8 of 1/0.1 squared
+    // Rounding of the direction, 6e-8, is amplified by up to 1 / 0.1^2.
+    EXPECT_NEAR(f.enter, enter, 1e-5 * leave);
   };
   check({{-5, 0, 0}, {0.6, 0, 0.8}}, 6.666666666666667, 10);
   check({{-5, 0, 0}, {2, 0, 0}}, 2, 3);
@@ -49,7 +50,7 @@ TEST(Cylinder, HitsCapsAlongAxis) {
     EXPECT_NEAR(capped.closest(Ray<double>{{0.5, 0, -5}, {slant, 0, 1}}).t, 5, 1e-12) << slant;
   EXPECT_FALSE(capped.closest(Ray<double>{{1.5, 0, -5}, {0, 0, 1}}).met());
   EXPECT_NEAR(capped.closest(Ray<double>{{0.5, 0, 5}, {0, 0, -1}}).t, 4, 1e-12);
-  EXPECT_NEAR(capped.closest(Ray<double>{{0.5, 0, 0.5}, {0, 0, 1}}).t, 0.5, 1e-12) << "from within";
+  EXPECT_NEAR(capped.closest(Ray<double>{{0.5, 0, 0.5}, {0, 0, 1}}).t, 0.5, 1e-12) << "from inside";
   const auto in_float = Target<float>::of_objects(kCapped);
   EXPECT_NEAR(in_float.closest(Ray<float>{{0.5f, 0, -5}, {0, 0, 1}}).t, 5, 1e-6f);
   EXPECT_NEAR(in_float.closest(Ray<float>{{0.5f, 0, -5}, {1e-30f, 0, 1}}).t, 5, 1e-6f);
@@ -73,7 +74,7 @@ TEST(Cylinder, HitsCapsAlongSlantedAxis) {
   }
 }
 
-// A cap centre at the origin does not mean an infinite cylinder, which is a separate form.
+// A cap centre at the origin must not select the infinite cylinder, a separate form of input.
 TEST(Cylinder, TreatsOriginAsOrdinaryCapCentre) {
   covers("A9");
   const Ray<double> above{{-5, 0, 100}, {1, 0, 0}};
@@ -84,7 +85,7 @@ TEST(Cylinder, TreatsOriginAsOrdinaryCapCentre) {
   EXPECT_NEAR(met(kEndless).t, 4, 1e-12);
 }
 
-// Rays through the rim cross the surface twice. Cap and wall must not each leave the crossing to the other.
+// Rays through the rim hit cap and wall at the same point. At least one of the two must accept the hit.
 TEST(Cylinder, DoesNotLeakAtRim) {
   covers("A10");
   const auto capped = Target<double>::of_objects(kCapped);
@@ -97,7 +98,7 @@ TEST(Cylinder, DoesNotLeakAtRim) {
     const Vec3d direction =
         safe_normalize(outward * -random.magnitude(1e-3, 1) + Vec3d(0, 0, -random.magnitude(1e-3, 1)) +
                        aside * random.between(-0.2, 0.2) * random.unit());
-    // The ray enters the body if it is inside both the wall and the cap a little later.
+    // The ray enters the body if a point shortly after the rim is inside the body.
     const Vec3d later = rim + direction * 1e-4;
     if (later.x * later.x + later.y * later.y > 1 - 1e-9) continue;
     const Ray<double> ray{rim - direction * random.between(0.5, 5), direction};
@@ -111,14 +112,14 @@ TEST(Cylinder, DoesNotLeakAtRim) {
   EXPECT_EQ(odd, 0);
 }
 
-// In the plane of a cap, the distance to that cap is 0 / 0, which must not affect the result.
+// For a ray in the plane of a cap, the distance to that cap is 0 / 0. It must not affect the hit on the wall.
 TEST(Cylinder, HitsWallInPlaneOfCap) {
   const auto check = [](const auto& capped, auto number) {
     using T = decltype(number);
     for (const T side : {T(1), T(-1)}) {
       for (const T height : {T(0), T(1)}) {
         EXPECT_EQ(capped.closest(Ray<T>{{-5 * side, 0, height}, {side, 0, 0}}).t, 4) << height;
-        EXPECT_EQ(capped.closest(Ray<T>{{0, 0, height}, {0, side, 0}}).t, 1) << "from within, " << height;
+        EXPECT_EQ(capped.closest(Ray<T>{{0, 0, height}, {0, side, 0}}).t, 1) << "from inside, " << height;
       }
       for (const T height : {T(-1), T(2)})
         EXPECT_FALSE(capped.closest(Ray<T>{{-5 * side, 0, height}, {side, 0, 0}}).met()) << height;

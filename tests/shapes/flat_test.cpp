@@ -25,10 +25,10 @@ TYPED_TEST(FlatShapes, MissesRaysParallelToPlane) {
   const auto plane = Target<T>::of_objects(kFloor);
   EXPECT_FALSE(plane.closest(Ray<T>{{0, 0, 1}, {1, 0, 0}}).met());
   EXPECT_FALSE(plane.closest(Ray<T>{{0, 0, 1}, {1, 0, -T(0)}}).met());
-  EXPECT_FALSE(plane.closest(Ray<T>{{0, 0, 0}, {1, 0, 0}}).met()) << "within the plane";
+  EXPECT_FALSE(plane.closest(Ray<T>{{0, 0, 0}, {1, 0, 0}}).met()) << "in the plane";
   const auto disk =
       Target<T>::of_objects("[{'type': 'disk', 'center': [0, 0, 0], 'normal': [0, 0, 1], 'radius': 1}]");
-  EXPECT_FALSE(disk.closest(Ray<T>{{-5, 0, 0}, {1, 0, 0}}).met()) << "within the disk's plane";
+  EXPECT_FALSE(disk.closest(Ray<T>{{-5, 0, 0}, {1, 0, 0}}).met()) << "in the plane of the disk";
   EXPECT_FALSE(disk.closest(Ray<T>{{-5, 0, 1}, {1, 0, 0}}).met());
 }
 
@@ -43,7 +43,7 @@ TYPED_TEST(FlatShapes, FindsPlaneAtAnySlant) {
   }
 }
 
-// The distance overflows, or nearly does. The ray then misses, or its surface has only finite numbers.
+// If the distance overflows or nearly does, the ray misses or its surface point has finite coordinates.
 TEST(Plane, StaysFiniteAtHorizon) {
   covers("A37");
   const auto plane = Target<double>::of_objects(kFloor);
@@ -72,8 +72,8 @@ TYPED_TEST(FlatShapes, EndsDisksAtRadius) {
   }
 }
 
-// Rays in the plane of a face give 0 * infinity. Tests the catalogue's six places for each axis, sign and
-// zero.
+// Rays in the plane of a face compute 0 * infinity. Tests six places for each axis, sign of the direction and
+// sign of zero.
 TYPED_TEST(FlatShapes, HitsBoxesWithRaysInFacePlanes) {
   using T = TypeParam;
   covers("A28");

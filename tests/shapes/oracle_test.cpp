@@ -14,14 +14,14 @@ namespace {
 
 using Vec = Vec3<long double>;
 
-// Distance of the shifted rays, and tolerance for hits, in ulp of the largest number in play.
+// Offset of the shifted rays and tolerance for hits, in ulp of the largest coordinate.
 constexpr int kShift = 8;
 
 template <class T>
 constexpr long double kUlp = std::numeric_limits<T>::epsilon();
 
-// Adds the ray itself and twelve copies: the origin shifted along each axis, the direction turned toward
-// each.
+// Adds the ray and twelve copies. The copies have the origin moved along an axis, or the direction turned
+// towards one, both in either sense.
 constexpr std::size_t kCopies = 13;
 void add_copies(const Ray<long double>& ray, long double shift, long double turn, Rays<long double>& rays) {
   rays.push_back(ray);
@@ -32,7 +32,7 @@ void add_copies(const Ray<long double>& ray, long double shift, long double turn
     }
 }
 
-// Hits of the copies.
+// Number of copies that hit, and range of their distances.
 struct Range {
   long double low = std::numeric_limits<long double>::infinity(), high = -low;
   std::size_t hits = 0;
@@ -46,8 +46,8 @@ struct Range {
   bool unanimous() const { return hits == 0 || hits == kCopies; }
 };
 
-// Returns true if the shape has a surface within `reach` of the point. Probes run along the normal there, and
-// from nearby points, since a hit may be just past an edge.
+// Returns true if the shape has a surface within `reach` of the point. Probes run along the normal through
+// the point and through nearby points, because a hit may be just beyond an edge.
 bool lies_on(const Target<long double>& shape, const Vec& point, const Vec& normal, long double reach) {
   Rays<long double> probes;
   for (const Vec& shift :
@@ -112,7 +112,7 @@ class ShapeOracle : public testing::TestWithParam<std::string> {
         const Verdict verdict = judge<T>(samples[s], places[p], each, 100 * s + p);
         EXPECT_EQ(verdict.wrong, 0) << samples[s] << " of size " << places[p].size << " at "
                                     << places[p].offset.x;
-        EXPECT_LT(verdict.undecided, verdict.rays / 4) << "too few rays decide anything";
+        EXPECT_LT(verdict.undecided, verdict.rays / 4) << "too many rays are undecided";
       }
   }
 };

@@ -53,8 +53,8 @@ TEST_P(ShapeParameters, GivesUnitTangentsInSurface) {
   }
 }
 
-// Between two nearby hits, the one farther along the tangent has the larger u.
-TEST_P(ShapeParameters, IncreasesTextureCoordinateAlongTangent) {
+// Between two nearby hits, the one farther along the tangent has the larger texture coordinate s.
+TEST_P(ShapeParameters, IncreasesSAlongTangent) {
   for (const Json& object : shape_samples(GetParam())) {
     Rays<double> rays;
     for (const Ray<double>& ray : rays_at<double>(object, {1, Vec3d()}, 300, 5)) rays.push_back(ray);
@@ -68,7 +68,7 @@ TEST_P(ShapeParameters, IncreasesTextureCoordinateAlongTangent) {
       const double moved = dot(there[0].position - here[0].position, here[0].tangent);
       const double grown = there[0].s - here[0].s;
       if (std::abs(grown) > 0.5 || std::abs(moved) < 5e-6)
-        continue;  // across the seam, or nearly along the ray
+        continue;  // crosses the seam, or the tangent is nearly parallel to the ray
       EXPECT_GT(grown * moved, 0) << object;
       ++compared;
     }
@@ -100,7 +100,7 @@ TEST(Parameters, UsesTextureCoordinatesOfMesh) {
   EXPECT_NEAR(f.v, 0.25, 1e-15);
   EXPECT_NEAR(f.s, 0.4375, 1e-15);
   EXPECT_NEAR(f.t, 0.25, 1e-15);
-  EXPECT_NEAR(f.tangent.y, -1, 1e-15) << "s falls upward";
+  EXPECT_NEAR(f.tangent.y, -1, 1e-15) << "s decreases along +y";
 }
 
 TEST(Parameters, RejectsUvCountMismatch) {

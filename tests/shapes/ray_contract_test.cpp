@@ -6,7 +6,8 @@
 #include "tests/support/covers.h"
 #include "tests/support/shapes.h"
 
-// Tests the contract of every registered shape besides its formula: ranges, ties, lanes, and invalid rays.
+// Tests the parts of the ray contract that do not depend on a shape's formula: ranges, ties, lanes, and
+// invalid rays.
 namespace orrery::test {
 namespace {
 
@@ -37,11 +38,11 @@ class RayContract : public testing::TestWithParam<std::string> {
               EXPECT_FALSE(hit.met()) << bad << " as component " << component;
             }
           }
-      EXPECT_FALSE(shape.closest(Ray<T>{rays[0].origin, Vec3<T>()}).met()) << "a direction of zero";
+      EXPECT_FALSE(shape.closest(Ray<T>{rays[0].origin, Vec3<T>()}).met()) << "zero direction";
     });
   }
 
-  // Expects closest() and occlude() to agree about every ray, and about its end.
+  // Expects closest() and occlude() to agree on every ray. A ray that ends exactly at a hit is not occluded.
   template <class T>
   void check_occlusion() {
     for_each_sample<T>([&](const Json& scene, const Rays<T>& rays) {
@@ -52,7 +53,7 @@ class RayContract : public testing::TestWithParam<std::string> {
         EXPECT_EQ(hits[i].met(), occluded[i] != 0);
         if (!hits[i].met()) continue;
         const std::span one(&rays[i], 1);
-        EXPECT_FALSE(shape.occluded(one, hits[i].t)[0]) << "the end itself does not belong to the ray";
+        EXPECT_FALSE(shape.occluded(one, hits[i].t)[0]) << "t_max is exclusive";
         EXPECT_TRUE(shape.occluded(one, std::nextafter(hits[i].t, std::numeric_limits<T>::infinity()))[0]);
       }
     });

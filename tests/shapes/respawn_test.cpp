@@ -33,7 +33,7 @@ class Leaver {
     spots_ = shape_.surfaces(rays_, hits_);
   }
 
-  // Sends a ray up from each hit and one down into the shape, half of them nearly along the surface.
+  // Sends one ray outward from each hit and one into the shape. Half of them are nearly tangential.
   void leave(Random& random, Tally& tally) const {
     Rays<T> up, down;
     for (std::size_t i = 0; i < rays_.size(); ++i) {
@@ -49,7 +49,7 @@ class Leaver {
       const int primitive = hits_[i].primitive;
       const bool closed = shape_.traits(primitive).closed;
       ++tally.rays;
-      if (closed && spots_[i].side < 0) continue;  // from within, other places may be hit
+      if (closed && spots_[i].side < 0) continue;  // from inside, a ray may hit another part of the shape
       tally.self_hits += above[i].primitive == primitive;
       if (closed)
         tally.leaks += !below[i].met() && runs_inside(down[i], spots_[i].step);
@@ -61,7 +61,7 @@ class Leaver {
  private:
   static constexpr double kMinTilt = 256 * static_cast<double>(std::numeric_limits<T>::epsilon());
 
-  // Returns false if a downward ray at an edge leaves through the next face at once.
+  // Returns false if an inward ray at an edge exits through the adjacent face within `step`.
   bool runs_inside(const Ray<T>& ray, T step) const {
     const auto way = exact_.closest(convert_ray<long double>(ray));
     return way.met() && way.t > static_cast<long double>(step);

@@ -18,7 +18,7 @@ Target<T> sphere(const Vec3d& center, double radius) {
 }
 
 // For rays along -z from (h, 0, D) at the unit sphere, the closed form is t = D - sqrt(1 - h^2).
-TEST(Sphere, IsAccurateFromMillionRadii) {
+TEST(Sphere, IsAccurateFromMillionRadiiAway) {
   covers("A1");
   const auto shape = sphere<double>(Vec3d(), 1);
   Random random(1);
@@ -38,7 +38,7 @@ TEST(Sphere, IsAccurateFromMillionRadii) {
   }
 }
 
-// Random directions, so that no test profits from an axis.
+// Uses random directions, because rays along an axis have smaller rounding errors.
 TEST(Sphere, IsAccurateFromAfarInAnyDirection) {
   covers("A1");
   const auto shape = sphere<double>(Vec3d(), 1);
@@ -53,9 +53,10 @@ TEST(Sphere, IsAccurateFromAfarInAnyDirection) {
   EXPECT_EQ(wrong, 0);
 }
 
-// In float the residue is known to a few ulp of the distance. If h differs from 1 by more, no ray is wrong.
-// The textbook discriminant is wrong for 29 % of these rays at a distance of 10,000.
-TEST(Sphere, IsAccurateInFloatWithinFewUlp) {
+// In float, the distance h of the ray from the centre is known to a few ulp of the ray's length. Rays whose h
+// differs from 1 by more must be decided correctly. The textbook discriminant fails for 29 % of these rays at
+// a distance of 10,000.
+TEST(Sphere, DecidesFloatRaysWithinFewUlp) {
   covers("A1");
   const auto shape = sphere<float>(Vec3d(), 1);
   Random random(3);
@@ -74,7 +75,7 @@ TEST(Sphere, IsAccurateInFloatWithinFewUlp) {
   }
 }
 
-TEST(Sphere, IsAccurateAsGround) {
+TEST(Sphere, IsAccurateWithPlanetRadius) {
   covers("A2");
   for (const double radius : {1.0, 1e3, 1e6, 1e7}) {
     const auto shape = sphere<double>(Vec3d(0, -radius, 0), radius);

@@ -14,7 +14,7 @@ using Exact = Target<long double>;
 template <class T>
 constexpr long double kUlp = std::numeric_limits<T>::epsilon();
 
-// One shape at one placement, with rays that hit it and their surface points.
+// One shape at one placement, with rays that hit it and the surface points of the hits.
 template <class T>
 struct PlacedShape {
   Json scene;
@@ -52,7 +52,8 @@ class ShapeSurface : public testing::TestWithParam<std::string> {
       }
   }
 
-  // Positions are within 8 ulp of the largest coordinate. Normals face the ray, with unit length to 4 ulp.
+  // Positions are accurate to 8 ulp of the largest coordinate. Normals face the ray, and their length is 1 to
+  // 4 ulp.
   template <class T>
   void check_positions() {
     for_each_placed_shape<T>(1000, [](const PlacedShape<T>& s, const Placement& placement) {
@@ -61,7 +62,7 @@ class ShapeSurface : public testing::TestWithParam<std::string> {
         const Vec normal(s.spots[i].geometric), shading(s.spots[i].normal), at(s.spots[i].position);
         const long double reach = 8 * kUlp<T> * s.magnitude(i, placement);
         const auto hit = s.exact.closest(Ray<long double>{at + normal * (2 * reach), -normal});
-        const auto beside = [&](const Vec& shift) {  // for hits on an edge
+        const auto beside = [&](const Vec& shift) {  // for hits at an edge
           return s.exact.closest(Ray<long double>{at + normal * (2 * reach) + shift, -normal});
         };
         bool on = hit.met() && hit.t <= 3 * reach;
@@ -83,7 +84,7 @@ class ShapeSurface : public testing::TestWithParam<std::string> {
 TEST_P(ShapeSurface, KeepsFloatPositionsOnShape) { check_positions<float>(); }
 TEST_P(ShapeSurface, KeepsDoublePositionsOnShape) { check_positions<double>(); }
 
-// Neighbouring points of the surface, found by other rays, lie at right angles to the normal.
+// Secants to neighbouring points of the surface, found by other rays, are perpendicular to the normal.
 TEST_P(ShapeSurface, GivesPerpendicularNormals) {
   for_each_placed_shape<double>(1000, [](const PlacedShape<double>& s, const Placement& placement) {
     const long double h = 1e-6L * static_cast<long double>(placement.size);
@@ -102,8 +103,8 @@ TEST_P(ShapeSurface, GivesPerpendicularNormals) {
         same_face = same_face && hits[k].met() && dot(spots[k].geometric, normal) > 0.999L;
       if (!same_face) continue;
       ++judged;
-      // For a curved surface the secant leaves the tangent by h / (2 radius of curvature), with a radius of
-      // at least 1/16 of the size.
+      // On a curved surface, the angle between secant and tangent is h / (2 radius of curvature), where the
+      // radius is at least 1/16 of the size.
       for (std::size_t k = 1; k < 3; ++k) {
         const Vec secant = near[k].at(hits[k].t) - near[0].at(hits[0].t);
         slanted += std::abs(dot(secant, normal)) > 1e-4L * length(secant);
@@ -114,7 +115,7 @@ TEST_P(ShapeSurface, GivesPerpendicularNormals) {
   });
 }
 
-// A ray from a closed convex shape outward misses, and a ray from just inside hits the surface again.
+// An outward ray from a closed convex shape misses it, and a ray from just inside hits the surface again.
 TEST_P(ShapeSurface, OrientsNormalsOfClosedShapesOutward) {
   covers("A38");
   for_each_placed_shape<double>(1000, [](const PlacedShape<double>& s, const Placement& placement) {
@@ -179,7 +180,7 @@ TEST(Mesh, InterpolatesNormalsUnlessTheyCancel) {
   EXPECT_NEAR(normal_at(0.5, 1e-9).x, 0, 1e-9);
   EXPECT_NEAR(normal_at(1e-9, 1e-9).x, -std::sqrt(0.5), 1e-8);
   EXPECT_NEAR(normal_at(0.25, 1e-9).x, -0.5 / std::sqrt(0.5 + 0.5 * 0.5 + 0.25), 0.1);
-  EXPECT_EQ(normal_at(5.5, 0), Vec3d(0, 0, 1)) << "opposite normals leave the flat one";
+  EXPECT_EQ(normal_at(5.5, 0), Vec3d(0, 0, 1)) << "normals that cancel are replaced by the flat normal";
 }
 
 }  // namespace

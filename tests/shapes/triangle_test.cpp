@@ -46,8 +46,7 @@ TEST(Mesh, DoesNotLeakFarFromTheOrigin) {
   covers("A12");
   const Vec3d far(148376, 1234, -223423);
   EXPECT_EQ(leaks_of<double>(far, 1000), 0);
-  EXPECT_EQ(leaks_of<float>(far, 200), 0)
-      << "in float its vertices lie on a coarse grid, but they are shared";
+  EXPECT_EQ(leaks_of<float>(far, 200), 0) << "in float, triangles share the rounded vertices";
 }
 
 TEST(Triangle, SupportsPicometreSize) {
@@ -134,8 +133,8 @@ TEST(Triangle, AvoidsSelfShadowingIfLongAndThin) {
     EXPECT_EQ(hits_of_leaving_a_strip<double>(600, width), 0) << width;
 }
 
-// Returns the number of shadow rays that hit the triangle they left, from points near its tip. The tip is
-// `height` above the middle part of a side of 2 m.
+// Returns the number of shadow rays that hit the triangle they leave, from points near its tip. The tip is
+// `height` above a side of length 2, near the middle of this side.
 template <class T>
 int hits_of_leaving_an_obtuse_sliver(double height, Random& random) {
   const Vec3d along = random.direction(), normal = safe_normalize(cross(along, random.direction())),
@@ -226,7 +225,7 @@ TEST(Triangle, LocatesHitsAccuratelyOnSlivers) {
   EXPECT_LE(slip_on_strip<double>(100, 1e9), 1e-13);
 }
 
-// A rounded cross product of two long sides loses the digits of the aspect ratio.
+// Rounding the cross product of two long sides loses as many digits as the aspect ratio has.
 TEST(Triangle, ComputesExactNormalsOfSlivers) {
   Random random(9);
   const auto whole = [](const Vec3d& v) { return Vec3d(std::round(v.x), std::round(v.y), std::round(v.z)); };

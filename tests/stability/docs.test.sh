@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Checks that docs/stability.md and its pictures equal the measurements of this build.
+# Checks that docs/stability.md and its charts equal the measurements of this build.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 program=${TEST_ORRERY:-build/orrery}

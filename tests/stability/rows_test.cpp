@@ -15,7 +15,7 @@ namespace {
 
 class Stability : public testing::TestWithParam<std::string> {};
 
-// The known method has at least the documented error, and ours keeps its bound.
+// The known method has at least the documented error, and this project's method keeps the smaller bound.
 TEST_P(Stability, KeepsBoundExceededByKnownMethod) {
   const StabilityRow& row = stability_row(GetParam().c_str());
   covers(row.id);
@@ -24,7 +24,7 @@ TEST_P(Stability, KeepsBoundExceededByKnownMethod) {
   EXPECT_GE(figures.known, row.known_at_least) << row.known;
   EXPECT_LE(figures.ours, row.ours_at_most) << row.ours;
   EXPECT_GE(figures.ours, 0);
-  EXPECT_LT(row.ours_at_most, row.known_at_least) << "a bound that the known method keeps tells nothing";
+  EXPECT_LT(row.ours_at_most, row.known_at_least) << "the known method also keeps the bound";
 }
 
 std::vector<std::string> all_ids() {
@@ -40,7 +40,6 @@ TEST(StabilityRows, HasUniqueNames) {
   EXPECT_THROW(stability_row("none"), std::out_of_range);
 }
 
-// Rows are pure functions.
 TEST(StabilityRows, MeasuresDeterministically) {
   for (const StabilityRow& row : stability_rows()) {
     const StabilityFigures once = row.measure(), again = row.measure();
@@ -58,9 +57,9 @@ TEST(StabilityReport, ReportsExceededBounds) {
   const StabilityResult good = example(0, 1e-9), bad = example(2e-9, 1e-9);
   EXPECT_TRUE(good.holds());
   EXPECT_FALSE(bad.holds());
-  EXPECT_NE(stability_text(std::span(&good, 1)).find("1 of 1 rows keep"), std::string::npos);
+  EXPECT_NE(stability_text(std::span(&good, 1)).find("1 of 1 rows are within"), std::string::npos);
   EXPECT_NE(stability_text(std::span(&bad, 1)).find("EXCEEDS 1e-09 m"), std::string::npos);
-  EXPECT_NE(stability_markdown(std::span(&bad, 1)).find("| 2e-09 m | 1e-09 m, **not kept** |"),
+  EXPECT_NE(stability_markdown(std::span(&bad, 1)).find("| 2e-09 m | 1e-09 m, **exceeded** |"),
             std::string::npos);
   EXPECT_NE(stability_markdown(std::span(&good, 1)).find("lengths of a \\| b | known method | 2.5 m |"),
             std::string::npos);
@@ -73,8 +72,8 @@ TEST(StabilityReport, FormatsFiguresWithTwoDigitsAndUnit) {
   EXPECT_EQ(figure_text(2.34e-7, "1"), "2.3e-07");
 }
 
-// In a logarithmic chart, a line that is 0 everywhere runs in the lane below the axis.
-TEST(StabilityChart, ShowsZerosBelowALogarithmicAxis) {
+// In a logarithmic chart, a line that is 0 everywhere is drawn in a strip below the axis.
+TEST(StabilityChart, ShowsZerosBelowLogarithmicAxis) {
   LineChart chart{"example", "a < b", "x", "y", true, true, {{"known", {}}, {"ours", {}}}};
   for (const double x : {1.0, 10.0, 100.0}) {
     chart.series[0].points.push_back({x, x / 10});

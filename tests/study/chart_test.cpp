@@ -70,13 +70,13 @@ TEST(ParetoFront, LeavesIndistinguishablePointsUndecided) {
 }
 
 TEST(ParetoFront, ComparesPointsRoundByRound) {
-  // The rounds differ much more than the points, since the same seeds and load shift both alike.
+  // Rounds differ much more than points, because both points of a round have the same seed and load.
   EXPECT_THAT(
       front_of({point({{1, 0.10}, {2, 0.20}, {3, 0.15}}), point({{1.5, 0.10}, {2.5, 0.20}, {3.5, 0.15}})}),
       ElementsAre(front, dominated));
 }
 
-// The two common rounds are too few to decide, but all rounds of each are not.
+// Two common rounds are too few to decide, but the intervals over all rounds of each point do.
 TEST(ParetoFront, ExcludesPointsDominatedBeyondIntervals) {
   const Point slow =
       point({{20, 0.2}, {4, 0.2}, {20.1, 0.2}, {20, 0.2}, {20.1, 0.2}, {20, 0.2}, {20.1, 0.2}, {20, 0.2}});
@@ -107,12 +107,12 @@ TEST(Point, ReportsIntervalsOfMeans) {
   EXPECT_NEAR(p.rmse_interval()->low, 0.3 - 0.1 * half, 0.002);
   EXPECT_NEAR(p.rmse_interval()->high, 0.3 + 0.1 * half, 0.002);
   EXPECT_EQ(p.max_rmse(), p.rmse_interval()->high);
-  EXPECT_EQ(point({{1, 0.3}, {9, 0.3}}).cpu_ms_interval()->low, 0) << "no mean is negative";
+  EXPECT_EQ(point({{1, 0.3}, {9, 0.3}}).cpu_ms_interval()->low, 0) << "times cannot be negative";
   const Point same = point({{5, 0.3}, {5, 0.3}});
   EXPECT_NEAR(same.rmse_interval()->high - same.rmse_interval()->low, 0, 1e-12);
 }
 
-// The interval contains the mean of normal values at the stated rate, for any number of values.
+// For normally distributed values, 95 % of the intervals contain the mean, for any number of values.
 TEST(Point, CoversMeanAtStatedRate) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal(0.3, 0.05);
@@ -142,7 +142,7 @@ Chart chart() {
   return chart;
 }
 
-TEST(Chart, ListsItsFrontByCost) {
+TEST(Chart, ListsFrontByCost) {
   Chart mixed = chart();
   std::swap(mixed.points[0], mixed.points[2]);
   EXPECT_THAT(mixed.front(), ElementsAre(2, 1, 0, 3));
@@ -157,7 +157,7 @@ TEST(Chart, PredictsFullSizeTimeFromPixelsAndThreads) {
   EXPECT_EQ(narrowed({640, 480}, 320).height, 240);
 }
 
-TEST(Chart, RecommendsTheCheapestPointBelowEachError) {
+TEST(Chart, RecommendsCheapestPointBelowEachError) {
   Chart all = chart();  // errors of 0.1, 0.025, 0.00625 and 0
   const auto found = recommendations(all);
   std::vector<std::pair<double, std::size_t>> pairs;
@@ -189,7 +189,7 @@ TEST(ChartSvg, IsWellFormedForAnyTitle) {
   const std::string svg = svg_of(chart());
   const auto found = elements(svg);
   EXPECT_EQ(found.front(), "svg");
-  EXPECT_EQ(std::count(found.begin(), found.end(), "circle"), 4 + 1);  // the points, and the legend's
+  EXPECT_EQ(std::count(found.begin(), found.end(), "circle"), 4 + 1);  // the points and one in the legend
   EXPECT_THAT(svg, testing::HasSubstr("a &lt;b&gt; &amp; \"c\"  ?</text>"));
   EXPECT_EQ(svg.find("nan"), std::string::npos);
   EXPECT_EQ(svg.find("inf"), std::string::npos);

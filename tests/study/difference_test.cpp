@@ -31,7 +31,7 @@ TEST(Difference, ReportsSignedBias) {
   EXPECT_EQ(difference(std::array{0.25f, 0.5f}, reference).bias, -0.125);
 }
 
-TEST(Difference, RegularizesRelativeErrorInTheDark) {
+TEST(Difference, RegularizesRelativeErrorOfDarkPixels) {
   const double in_the_dark = difference(std::array{0.01f}, std::array{0.0f}).relative_mse;
   EXPECT_NEAR(in_the_dark, 1, 1e-6);
   const double in_the_light = difference(std::array{1.01f}, std::array{1.0f}).relative_mse;

@@ -8,7 +8,7 @@
 #include "core/base/hash.h"
 #include "tests/support/structures.h"
 
-// Tests of one registered structure, whose results must equal those of the list.
+// Compares the results of one registered structure with those of the list.
 namespace orrery::test {
 
 // Results of a structure: closest hits, and occlusion up to each distance of `reaches`.
@@ -24,7 +24,8 @@ struct TraversalResults {
   }
 };
 
-// Expects bit-identical hits and equal occlusion. Fails if no ray hits anything, as that would prove nothing.
+// Expects bit-identical hits and equal occlusion. Fails if no ray hits, because the comparison would then
+// prove nothing.
 template <class T>
 void expect_agreement(const TraversalResults<T>& found, const TraversalResults<T>& expected) {
   int wrong = 0, met = 0;
@@ -33,8 +34,8 @@ void expect_agreement(const TraversalResults<T>& found, const TraversalResults<T
     wrong += a.primitive != b.primitive || a.t != b.t;
     met += b.met();
   }
-  EXPECT_GT(met, 0) << "no ray meets anything";
-  EXPECT_EQ(wrong, 0) << "of " << expected.closest.size() << " rays, of which " << met << " meet something";
+  EXPECT_GT(met, 0) << "no ray hits";
+  EXPECT_EQ(wrong, 0) << "of " << expected.closest.size() << " rays, " << met << " of which hit";
   EXPECT_EQ(found.occluded, expected.occluded);
 }
 template <class T>
@@ -44,8 +45,7 @@ void expect_agreement(Structure<T>& structure, Structure<T>& reference, const Ra
                    TraversalResults<T>(reference, rays, reaches));
 }
 
-// Returns the results of the list. Caches them by scene, rays and reaches: the list is slower than all
-// structures.
+// Returns the results of the list. Caches them by scene, rays and reaches, because the list is slow.
 template <class T>
 const TraversalResults<T>& list_results(const Json& scene, const Rays<T>& rays,
                                         std::initializer_list<T> reaches) {

@@ -9,7 +9,7 @@
 // Conversion of ray lists to batches.
 namespace orrery::test {
 
-// Fills a batch with rays and the remaining room with inactive rays. REQUIRES: 1 to kBatch rays.
+// Fills a batch with rays and its remaining elements with inactive rays. REQUIRES: 1 to kBatch rays.
 template <class T>
 void fill_batch(std::span<const Ray<T>> rays, T t_max, RayBatch<T>& batch) {
   batch.count = static_cast<int>(rays.size());
@@ -25,7 +25,7 @@ LaneGroups groups_of(const RayBatch<T>& batch) {
   return LaneGroups::covering(0, batch.count, kWidth<T>);
 }
 
-// Calls visit(part, index of its first ray) for consecutive parts of at most kBatch rays.
+// Calls visit(part, index of the part's first ray) for consecutive parts of at most kBatch rays.
 template <class T, class Visit>
 void for_each_batch(std::span<const Ray<T>> rays, const Visit& visit) {
   for (std::size_t from = 0; from < rays.size(); from += kBatch)

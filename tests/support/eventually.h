@@ -5,8 +5,8 @@
 
 namespace orrery::test {
 
-// Calls ready() every millisecond until it returns true. Returns false after ten minutes, which only a hang
-// takes.
+// Calls ready() every millisecond until it returns true. Returns false after ten minutes, which means that
+// the program hangs.
 template <class Ready>
 bool eventually(const Ready& ready) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(10);

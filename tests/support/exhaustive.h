@@ -7,14 +7,14 @@
 
 namespace orrery::test {
 
-// Returns whether tests run at full size: `script/test --all` and the sanitizers do, `script/test` does not.
-// tests/exhaustive.txt lists the affected tests.
+// Returns true if tests run at full size, as in `script/test --all`. tests/exhaustive.txt lists the affected
+// tests.
 inline bool exhaustive() {
   const char* const set = std::getenv("TEST_EXHAUSTIVE");
   return set && std::string_view(set) == "yes";
 }
 
-// Returns whether tests use fewer pixels or rays. Sanitizers find no more in many.
+// Returns true if tests use fewer pixels or rays. Sanitizers find no more errors with many.
 inline bool reduced() { return kSanitized || !exhaustive(); }
 
 }  // namespace orrery::test

@@ -3,7 +3,7 @@
 #include "core/model/light.h"
 #include "tests/support/scenes.h"
 
-// Direct evaluation of one light at single points.
+// Evaluation of one light at single points.
 namespace orrery::test {
 
 // Light that arrives at a point.

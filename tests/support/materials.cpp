@@ -19,7 +19,7 @@ struct Batches {
   LaneGroups groups;
 };
 
-// Fills the batch with cases. Lanes past the cases have no material.
+// Fills the batch with cases. The remaining lanes have no material.
 template <class T>
 void fill(std::span<const typename Probe<T>::Case> cases, Batches<T>& b) {
   const int count = static_cast<int>(cases.size());
@@ -74,7 +74,7 @@ std::vector<typename Probe<T>::Evaluation> Probe<T>::evaluated(std::span<const C
   return found;
 }
 
-// Uses a different seed for each batch, and a different pixel for each of its slots.
+// Uses a different seed for each batch, and a different pixel for each element of a batch.
 template <class T>
 std::vector<typename Probe<T>::Sampled> Probe<T>::sampled(const Case& one, int count, std::uint64_t seed,
                                                           Lobes lobes) const {

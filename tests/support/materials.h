@@ -8,10 +8,11 @@
 #include "core/model/material.h"
 #include "tests/support/scenes.h"
 
-// Direct evaluation of one material in single directions.
+// Evaluation of one material for single directions.
 namespace orrery::test {
 
-// Returns a unit direction at an angle of this cosine to the z axis, rotated by `turns` about it.
+// Returns a unit direction whose angle to the z axis has cosine `cosine`, rotated by `turns` turns about this
+// axis.
 inline Vec3d tilted(double cosine, double turns = 0) {
   const double sine = std::sqrt(1 - cosine * cosine), angle = 2 * std::numbers::pi * turns;
   return {sine * std::cos(angle), sine * std::sin(angle), cosine};
@@ -37,11 +38,11 @@ class Probe {
     Vec3<T> reflectance, transmittance, refracted, filter;
   };
 
-  // Returns the part of a light of intensity 1 that is reflected toward the ray's origin. 0 if the material
+  // Returns the radiance reflected toward the ray's origin for a light of intensity 1, or 0 if the material
   // ignores the light.
   std::vector<Vec3<T>> reflected(std::span<const Case> cases) const;
   Vec3<T> reflected(const Case& one) const { return reflected(std::span(&one, 1)).front(); }
-  // Result of the kernel for a pair of directions. pi_bsdf_cos is 0 if pdf is 0.
+  // Result of the kernel for a pair of directions. pi_bsdf_cos, pi times BSDF times cosine, is 0 if pdf is 0.
   struct Evaluation {
     Vec3<T> pi_bsdf_cos;
     T pdf;
@@ -61,7 +62,7 @@ class Probe {
   Specular specular(const Case& one) const { return specular(std::span(&one, 1)).front(); }
   MaterialTraits traits() const;
   ReflectionLimits limits() const;
-  // Returns the reflection of ambient light of 1.
+  // Returns the reflected radiance for ambient light of radiance 1.
   Vec3<T> ambient(const Case& one = {}, Lobes lobes = Lobes::all) const;
 
  private:

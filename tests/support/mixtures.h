@@ -9,14 +9,14 @@ namespace orrery::test {
 
 // Returns balls with centres in [-3, 3]^3.
 Json balls(int count, std::uint64_t seed);
-// Returns all registered shapes, unbounded ones too, at offsets in [-2, 2]^3.
+// Returns all registered shapes, including unbounded ones, at offsets in [-2, 2]^3.
 Json mixture(std::uint64_t seed);
 // Returns a wavy sheet of 2 * side * side triangles over [-2, 2]^2.
 Json wavy_sheet(int side);
-// Returns planes near the origin, and three balls.
+// Returns `count` planes near the origin, and three balls.
 Json planes(int count, std::uint64_t seed);
 
-// Returns rays with origins in [-half, half]^3 and any directions.
+// Returns rays with origins in [-half, half]^3 and random directions.
 template <class T>
 Rays<T> any_rays(double half, int count, std::uint64_t seed) {
   Random random(seed);

@@ -6,7 +6,7 @@
 #include "core/render/renderer.h"
 #include "tests/support/scenes.h"
 
-// Whole pictures, rendered through plan, tiles and pool.
+// Images of whole scenes, rendered through plan, tiles and pool.
 namespace orrery::test {
 
 struct Picture {
@@ -21,25 +21,26 @@ struct Picture {
   int brighter_than(float level) const;
 };
 
-// Renders a scene. `threads` 0: the shared pool of two.
+// Renders a scene. `threads` = 0 selects the shared pool of two threads.
 Picture render(const Json& scene, const RenderRequest& request = {}, int threads = 0);
 Picture render(const std::shared_ptr<const Scene>& scene, const RenderRequest& request = {}, int threads = 0);
 
 // Renders a plan of the scene on the shared pool. The film is linear, unless a budget requires sums.
 RenderResult rendered(const std::shared_ptr<const Scene>& scene, const RenderRequest& request = {},
                       const RenderControl& control = {});
-// Returns the values of all pixels and channels in linear radiance. REQUIRES: as Film::image() of linear32.
+// Returns the linear values of all pixels and channels. REQUIRES: those of Film::image(linear32).
 std::vector<double> linear_values(const Film& film);
-// Returns display values, before rounding to codes.
+// Returns the sRGB-encoded values, not rounded to 8 bits.
 std::vector<double> shown(std::vector<double> linear);
 double rms_difference(const std::vector<double>& a, const std::vector<double>& b);
 
-// Returns the pool that tests share.
+// Returns the pool of two threads that tests share.
 WorkerPool& shared_pool();
 
-// Returns the largest difference of two pictures of one size in any channel.
+// Returns the largest difference of two images of equal size in any channel, or infinity if a difference is
+// not finite.
 double largest_difference(const Picture& a, const Picture& b);
-// Returns whether two pictures are bit-identical, so that NaN equals NaN.
+// Returns true if two images are bit-identical. Equal NaN bits count as identical.
 bool identical(const Picture& a, const Picture& b);
 // Returns the number of pixels that differ by more than `tolerance` in some channel.
 int differing_pixels(const Picture& a, const Picture& b, double tolerance);

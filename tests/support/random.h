@@ -11,7 +11,8 @@ class Random : public SplitMix {
  public:
   using SplitMix::SplitMix;
 
-  // Returns a number between the two, uniform in its logarithm.
+  // Returns a number from `low` to `high` whose logarithm is uniformly distributed. REQUIRES: 0 < low <=
+  // high.
   double magnitude(double low, double high) { return low * std::pow(high / low, unit()); }
 
   Vec3d direction() {  // uniform over the sphere

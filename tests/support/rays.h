@@ -10,7 +10,7 @@
 #include "tests/support/exhaustive.h"
 #include "tests/support/scenes.h"
 
-// Single rays intersected with the shapes of a scene, in any precision. The kernels get whole batches.
+// Intersects single rays with the shapes of a scene, in any precision. Kernels receive whole batches.
 namespace orrery::test {
 
 template <class T>
@@ -38,8 +38,7 @@ struct SurfaceSample {
 template <class T>
 using Rays = std::vector<Ray<T>>;
 
-// Returns all rays in an exhaustive run without sanitizers, else about 1,000 evenly spaced ones. Sanitizers
-// need to run all of the code, but not all numbers.
+// Returns all rays in an exhaustive run without sanitizers, otherwise about 1,000 evenly spaced rays.
 template <class T>
 Rays<T> subsample_rays(const Rays<T>& rays) {
   if (!reduced()) return rays;
@@ -68,7 +67,7 @@ class Target {
   Hit<T> closest(const Ray<T>& ray) const { return closest(std::span(&ray, 1)).front(); }
   // Returns whether each ray is occluded before `t_max`.
   std::vector<char> occluded(std::span<const Ray<T>> rays, T t_max) const;
-  // Returns the surfaces of the hits. Entries of misses are unspecified.
+  // Returns the surfaces of the hits. Elements of misses are unspecified.
   std::vector<SurfaceSample<T>> surfaces(std::span<const Ray<T>> rays, std::span<const Hit<T>> hits) const;
   SurfaceSample<T> surface(const Ray<T>& ray, const Hit<T>& hit) const {
     return surfaces(std::span(&ray, 1), std::span(&hit, 1)).front();

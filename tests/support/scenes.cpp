@@ -88,7 +88,7 @@ void mirror_mesh(Json& object) {
     for (Json& normal : object["normals"]) normal[0] = -normal[0].get<double>();
 }
 
-// Mirrors an instance. Its rotation is reversed, about the mirrored axis.
+// Mirrors an instance. The rotation is reversed and its axis mirrored.
 void mirror_instance(Json& instance) {
   const Vec3d scale = vector(instance.value("scale", Json{1, 1, 1}));
   instance["scale"] = numbers(Vec3d(-scale.x, scale.y, scale.z));

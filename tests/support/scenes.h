@@ -8,15 +8,15 @@
 
 #include "core/model/scene.h"
 
-// Test scenes as JSON: built from snippets, read from scenes/, moved and scaled as a whole.
+// Test scenes as JSON, built from snippets or read from scenes/, and transformations of whole scenes.
 namespace orrery::test {
 
 using Json = nlohmann::json;
 
-// Parses a snippet, in which ' may stand for ".
+// Parses JSON in which ' may be used instead of ".
 Json json(std::string_view text);
 
-// Returns a scene of one object or a list of objects, seen from [0, 0, 4]. `patch` is merged over it (RFC
+// Returns a scene of one object or a list of objects, seen from [0, 0, 4]. `patch` is merged into it (RFC
 // 7386) and may add lights, materials or another camera. Objects without a material get "white", which is
 // rough with kd 1 and ka 1.
 Json scene_with(const Json& objects, const Json& patch = Json::object());
@@ -33,8 +33,8 @@ Json sample(std::string_view name);
 // Returns the names of all scenes/*.json, sorted.
 std::vector<std::string> sample_names();
 
-// Scales a scene about the origin. Lights are as bright as before on the scaled objects. REQUIRES: no
-// material filters light, as the part that remains after one metre does not scale.
+// Scales a scene about the origin. Irradiance on the objects does not change. REQUIRES: no material filters
+// light, because the filter per metre is not scaled.
 Json scaled(Json scene, double factor);
 Json without_filters(Json scene);
 // Moves a scene by `offset`.

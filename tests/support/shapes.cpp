@@ -39,7 +39,8 @@ const std::map<std::string, std::vector<Json>>& all_samples() {
   return samples;
 }
 
-// Returns a target point for rays, in or near the object's box. Unbounded objects use the placement.
+// Returns a target point for rays in or near the object's box, or near the placement if the object is
+// unbounded.
 Vec3d aim(Random& random, const Boundsd& bounds, const Placement& placement) {
   if (!bounds.bounded()) return placement.offset + random.in_cube(2 * placement.size);
   const Vec3d middle = (bounds.lo + bounds.hi) * 0.5, half = (bounds.hi - bounds.lo) * 0.6;

@@ -11,7 +11,7 @@ namespace orrery::test {
 
 std::vector<std::string> accelerator_names();
 
-// Function that puts a stage in front of an accelerator.
+// Function that wraps an accelerator in another stage.
 template <class T>
 using Stage = std::function<std::shared_ptr<const Accelerator<T>>(const PrimitiveList<T>&,
                                                                   std::shared_ptr<const Accelerator<T>>)>;
@@ -20,13 +20,13 @@ template <class T>
 class Structure {
  public:
   Structure(const Json& scene, const std::string& accelerator, const Stage<T>& stage = {});
-  // Builds the structure over the scene at `time`. With `before`, refits the earlier structure if its type
-  // allows that.
+  // Builds the structure over the scene at `time`. If `before` is given and its type supports it, refits that
+  // structure.
   Structure(const std::shared_ptr<const Scene>& scene, const std::string& accelerator, double time,
             const Structure* before = nullptr);
 
   std::vector<Hit<T>> closest(std::span<const Ray<T>> rays);
-  // Returns the same, given an already known hit of each ray. REQUIRES: one known hit per ray.
+  // Returns the same hits, starting from an already known hit of each ray. REQUIRES: one known hit per ray.
   std::vector<Hit<T>> closest(std::span<const Ray<T>> rays, std::span<const Hit<T>> known);
   std::vector<char> occluded(std::span<const Ray<T>> rays, T t_max);
   AcceleratorFacts facts() const { return accelerator_->facts(); }

@@ -2,8 +2,8 @@
 // passed tests cover, the failed test cases with their messages, and the numbers of passed, failed and
 // skipped test cases. Exits with 1 on a failure.
 //
-// GoogleTest executables count their cases. Any other ctest counts as one. C++ tests name their rows by
-// RecordProperty("stability", "A1 A2"), scripts by printing a line "stability: A1 A2".
+// Each GoogleTest executable reports its own test cases. Any other ctest counts as one case. C++ tests record
+// their rows with RecordProperty("stability", "A1 A2"), scripts by printing a line "stability: A1 A2".
 
 import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -34,7 +34,7 @@ const note = (text) =>
     .filter(Boolean)
     .forEach((row) => rows.add(row));
 
-// Counts the cases of one GoogleTest report. Returns the number of failed ones.
+// Counts the cases of one GoogleTest report. Returns the number of failed cases.
 function countGoogleTest(xml) {
   let failed = 0;
   for (const one of cases(xml)) {
@@ -65,7 +65,7 @@ for (const folder of process.argv.slice(2)) {
       // A crash at exit fails the executable although all of its cases passed.
       if (countGoogleTest(readFileSync(detail, "utf8")) > 0 || status !== "fail") continue;
       ++total.failed;
-      failures.push(`${attribute(one, "name")}: the executable failed, not one of its cases`);
+      failures.push(`${attribute(one, "name")}: the executable failed, but none of its test cases`);
     } else if (status === "run") {
       ++total.passed;
       for (const [, value] of one.matchAll(/(?:^|>)stability: ([\w ]*)/gm)) note(value);

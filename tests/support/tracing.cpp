@@ -7,7 +7,7 @@
 
 namespace orrery::test {
 
-// Accelerator decorator that records the rays of all calls. Each batch of rays is one call, because the
+// Accelerator decorator that records the rays of all calls. Each call receives one whole batch, because the
 // batches of these tests are no larger than a slice.
 class Tracing::Recorder final : public Accelerator<double> {
  public:

@@ -9,13 +9,13 @@
 #include "core/plan/plan.h"
 #include "tests/support/scenes.h"
 
-// Single rays traced by a technique in double precision, without camera, picture and rounding to float. All
-// rays that the technique sends are recorded.
+// Traces single rays with a technique in double precision, without a camera or rounding to float. Records all
+// rays that the technique traces.
 namespace orrery::test {
 
 struct TraceOutput {
   Vec3d radiance;
-  Vec3d weights;  // ledger of the rays that were not traced
+  Vec3d weights;  // summed weights of the rays that were not traced
   double cut;     // largest component of `weights`
 };
 
@@ -27,7 +27,7 @@ class Tracing {
   ~Tracing();
 
   TraceOutput trace(const Ray<double>& ray);
-  // Traces up to kBatch rays at once, like a tile, with the random numbers of one sample.
+  // Traces up to kBatch rays as one batch, with the random numbers of one sample.
   std::vector<TraceOutput> trace(const std::vector<Ray<double>>& rays, int sample = 0);
 
   // Rays of the last trace by depth, without shadow rays.
@@ -47,19 +47,19 @@ class Tracing {
 };
 
 struct Estimate {
-  double mean, sd;  // over slots, each the mean of its samples
+  double mean, sd;  // over batch elements, each the mean of its samples
   double error() const { return sd / std::sqrt(double{kBatch}); }
 };
-// Estimates the red light along one ray from the slots of a batch. The slots are independent unless their
-// paths are reused. The `samples` of a slot are stratified.
+// Estimates the red radiance along one ray from the elements of a batch. The elements are independent unless
+// paths are reused. The `samples` of an element are stratified.
 Estimate estimate(const std::shared_ptr<const Scene>& scene, const Vec3d& from, const Vec3d& toward,
                   int max_depth, const char* technique = "path");
 Estimate estimate(const Json& scene, const Vec3d& from, const Vec3d& toward, int max_depth,
                   const char* technique = "path");
 Estimate estimate_alone(const Json& scene, const Vec3d& from, const Vec3d& toward, int max_depth,
-                        int samples);  // by paths, with reuse 1
+                        int samples);  // technique path, without path reuse
 
-// Returns the radiance of every pixel in double precision, without the picture's rounding to float.
+// Returns the radiance of every pixel in double precision, without rounding to float.
 std::vector<Vec3d> trace_picture(const Json& scene, const RenderRequest& request);
 
 }  // namespace orrery::test

@@ -8,30 +8,32 @@
 #include "tests/support/tracing.h"
 
 // Tests the analytic cases with diffuse light of CIE 171:2006 (test cases to assess the accuracy of lighting
-// computer programs). Expected values use formulas of configuration factors (Howell, "A Catalog of Radiation
-// Heat Transfer Configuration Factors"), since the report's tables have misprints. Lengths in metres.
+// computer programs). Expected values are computed from formulas of configuration factors (Howell, "A Catalog
+// of Radiation Heat Transfer Configuration Factors"), because the report's tables have misprints. Lengths are
+// in metres.
 namespace orrery::test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// Returns the factor from a point below the corner of a parallel rectangle a x b at height h (B-3).
+// Returns the configuration factor from a point to a parallel rectangle a x b at distance h whose corner is
+// above the point (B-3).
 double parallel(double a, double b, double h) {
   const double x = a / h, y = b / h, p = std::sqrt(1 + x * x), q = std::sqrt(1 + y * y);
   return (x / p * std::atan(y / p) + y / q * std::atan(x / q)) / (2 * kPi);
 }
-// Returns the factor from a point to a perpendicular rectangle that extends by `a` from the point's plane.
-// Its side b lies in the plane, with an end at distance `c` from the point (B-4).
+// Returns the configuration factor from a point to a perpendicular rectangle that extends by `a` from the
+// point's plane. Its side b is in this plane, with one end at distance `c` from the point (B-4).
 double perpendicular(double a, double b, double c) {
   const double x = a / b, y = c / b, r = std::sqrt(x * x + y * y);
   return (std::atan(1 / y) - y / r * std::atan(1 / r)) / (2 * kPi);
 }
 
-// Returns the radiance of a white Lambert surface at `point` under lamps of radiance 1, which is their
-// configuration factor.
+// Returns the radiance of a white Lambert surface at `point` under lamps of radiance 1. It equals the
+// configuration factor of the lamps.
 double measured(Json scene, const Vec3d& point, const Vec3d& normal, int samples = 64) {
   const Vec3d side = test::perpendicular(normal);
-  constexpr double kHalf = 1e-3;  // half size of the receiver, which occludes nothing
+  constexpr double kHalf = 1e-3;  // half width of the receiver, which is too small to occlude light
   scene["objects"].push_back({{"type", "rectangle"},
                               {"corner", numbers(point - (side + cross(normal, side)) * kHalf)},
                               {"a", numbers(side * (2 * kHalf))},
@@ -60,7 +62,7 @@ void expect_factor(const Json& scene, const Vec3d& point, const Vec3d& normal, d
       << point.x << " " << point.y << " " << point.z;
 }
 
-// 5.3: a lamp of 1 m x 1 m in the ceiling of a black room 4 m wide and 3 m high, onto a wall.
+// 5.3: a ceiling lamp of 1 m x 1 m lights a wall and the floor of a black room, 4 m wide and 3 m high.
 TEST(Cie171, MatchesAreaLampOnWallAndFloor) {
   covers("R8 R9 light-40");
   const Json scene = scene_of_lamp(Vec3d(-0.5, -0.5, 3), Vec3d(1, 0, 0), Vec3d(0, 1, 0));
@@ -78,7 +80,7 @@ TEST(Cie171, MatchesAreaLampOnWallAndFloor) {
   }
 }
 
-// 5.6: a uniformly bright floor of 4 m x 4 m, onto the wall at its edge and the ceiling 3 m above.
+// 5.6: a uniformly bright floor of 4 m x 4 m lights the wall at its edge and the ceiling 3 m above.
 TEST(Cie171, MatchesBrightFloorOnWallAndCeiling) {
   covers("R8 R9 light-40");
   const Json scene = scene_of_lamp(Vec3d(0, -2, 0), Vec3d(4, 0, 0), Vec3d(0, 4, 0));
@@ -96,14 +98,14 @@ TEST(Cie171, MatchesBrightFloorOnWallAndCeiling) {
   }
 }
 
-// 5.7: as 5.6, with an upright screen next to the point, or with one that hangs in the room and occludes a
-// part.
+// 5.7: like 5.6, with an upright screen next to the point, or with a horizontal screen in the room that
+// occludes part of the floor.
 TEST(Cie171, MatchesBrightFloorBehindScreens) {
   covers("R8 light-40");
   Json scene = scene_of_lamp(Vec3d(0, -2, 0), Vec3d(4, 0, 0), Vec3d(0, 4, 0));
   Json upright = scene, hanging = scene;
   upright["objects"].push_back(rectangle(Vec3d(1.5, -5, 0.5), Vec3d(0, 10, 0), Vec3d(0, 0, 4), "black"));
-  // Half as high as the point, so that it occludes twice its size.
+  // The screen is half as high as the point, so it occludes a floor area of twice its width and length.
   hanging["objects"].push_back(rectangle(Vec3d(1, -0.5, 1.5), Vec3d(0.75, 0, 0), Vec3d(0, 1, 0), "black"));
   const double x = 1.5 - 1e-6;
   expect_factor(upright, Vec3d(x, 0, 3), Vec3d(0, 0, -1), 2 * parallel(x, 2, 3), 256);
@@ -112,8 +114,8 @@ TEST(Cie171, MatchesBrightFloorBehindScreens) {
                 2 * (parallel(1.5, 2, 3) + parallel(2.5, 2, 3)) - hidden, 256);
 }
 
-// 5.8: in a closed room of reflectance rho, light after k reflections sums to rho^k of the lamp's, for any
-// shape of the room.
+// 5.8: in a closed room of any shape and reflectance rho, the flux after k reflections is rho^k times that of
+// the lamp.
 TEST(Cie171, ConservesLightInClosedRoom) {
   covers("light-40");
   constexpr double kReflectance = 0.7, kSide = 4;
@@ -131,7 +133,7 @@ TEST(Cie171, ConservesLightInClosedRoom) {
   constexpr int kBatches = 200;
   const auto loaded = load(room);
   for (int batch = 0; batch < kBatches; ++batch) {
-    std::vector<Ray<double>> rays;  // toward evenly spread points of the walls
+    std::vector<Ray<double>> rays;  // towards uniform points of the walls
     for (int i = 0; i < kBatch; ++i) {
       const auto axis = static_cast<std::size_t>(i % 3);
       const double wall = i / 3 % 2 == 0 ? 0 : kSide;
@@ -148,7 +150,7 @@ TEST(Cie171, ConservesLightInClosedRoom) {
     sum += mean / kBatches;
     squares += mean * mean / kBatches;
   }
-  // Intensity 1 makes a white surface 1 m away read 1: a flux of 4 pi^2.
+  // A light of intensity 1 causes a radiance of 1 on a white surface 1 m away. Its flux is 4 pi^2.
   const double direct = 4 * kPi * kPi / (6 * kSide * kSide) / kPi;
   double expected = 0;
   for (int k = 1; k <= kDepth; ++k) expected += direct * std::pow(kReflectance, k);
@@ -157,7 +159,8 @@ TEST(Cie171, ConservesLightInClosedRoom) {
   EXPECT_LT(error, 2e-3 * expected);
 }
 
-// 5.9: a uniform sky through an open roof of 4 m x 4 m, 3 m above the floor, is a uniformly bright ceiling.
+// 5.9: a uniform sky through an open roof of 4 m x 4 m, 3 m above the floor, acts as a uniformly bright
+// ceiling.
 TEST(Cie171, MatchesUniformSkyThroughOpenRoof) {
   covers("R8 R9 light-40");
   Json room = scene_with(Json::array(), json("{'background': [1, 1, 1], 'materials': {'white': {'type': "

@@ -24,7 +24,7 @@ Quad in_order(Quad quad) {
   return quad;
 }
 
-// Returns four corners per quad, from lists of two triangles each.
+// Returns the corners of each quad, which the mesh stores as two triangles.
 std::vector<Quad> quads_of(const Json& mesh) {
   std::vector<Quad> quads;
   const Json &positions = mesh["positions"], &indices = mesh["indices"];
@@ -37,7 +37,7 @@ std::vector<Quad> quads_of(const Json& mesh) {
   return quads;
 }
 
-// Removes the quad with these corners, in millimetres, from the list.
+// Expects a quad with these corners, in millimetres, and removes it from the list.
 void expect_one(std::vector<Quad>& quads, Quad corners) {
   for (Vec3d& corner : corners) corner = corner / 1000;
   corners = in_order(corners);
@@ -50,7 +50,7 @@ void expect_one(std::vector<Quad>& quads, Quad corners) {
   quads.erase(found);
 }
 
-// Removes a block with this top: the top, and a wall below each side.
+// Expects a block with this top, that is, the top and a wall below each side, and removes its quads.
 void expect_block(std::vector<Quad>& quads, const Quad& top) {
   expect_one(quads, top);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -60,8 +60,8 @@ void expect_block(std::vector<Quad>& quads, const Quad& top) {
 }
 
 // Cornell University Program of Computer Graphics, "Cornell Box Data": positions in millimetres, a camera of
-// focal length 0.035 over a film of 0.025 x 0.025. Linear RGB colours do not follow from its spectra. The
-// scene uses those of the Tungsten renderer's scene, as its description states.
+// focal length 0.035 over a film of 0.025 x 0.025. The spectra do not determine linear RGB colours. The scene
+// uses the colours of the Tungsten renderer's scene, as its description states.
 TEST(CornellBox, MatchesPublishedData) {
   covers("light-39");
   const Json scene = sample("cornell-box");
@@ -77,7 +77,7 @@ TEST(CornellBox, MatchesPublishedData) {
   expect_one(red,
              {Vec3d(552.8, 0, 0), Vec3d(549.6, 0, 559.2), Vec3d(556, 548.8, 559.2), Vec3d(556, 548.8, 0)});
   EXPECT_TRUE(green.empty() && red.empty());
-  // The ceiling, 556 by 559.2, surrounds the lamp, from [213, 227] to [343, 332].
+  // The ceiling measures 556 x 559.2. The lamp extends from [213, 227] to [343, 332].
   const Json& lamp = scene["objects"][3];
   EXPECT_EQ(lamp["corner"], Json({0.213, 0.5488, 0.227}));
   EXPECT_EQ(lamp["edge_u"], Json({0.13, 0, 0}));
@@ -110,8 +110,8 @@ RenderRequest alone(int side, int samples, int max_depth, std::uint64_t seed) {
   return request;
 }
 
-// Contribution of paths with one number of bounces, from single samples: variance, and mean over the
-// channels.
+// Contribution of paths with a fixed number of bounces, measured with single samples: variance, and mean over
+// the channels.
 struct Bounce {
   double variance = 0, mean = 0;
 };
@@ -143,9 +143,9 @@ std::vector<Bounce> by_bounce(int most, int side, int seeds) {
   return bounces;
 }
 
-// Variance shares of single samples, by an independent path tracer without roulette. Direct light has 8 %,
-// one bounce 49 to 58 %, two bounces 21 to 26 % and three 9 to 13 %. Roulette moves a few points to longer
-// paths, and edges in these large pixels move a few to direct light.
+// Compares fractions of the variance of single samples with those of an independent path tracer without
+// roulette. Direct light has 8 %, one bounce 49 to 58 %, two bounces 21 to 26 % and three 9 to 13 %. Roulette
+// shifts a few percent to longer paths, and edges in large pixels shift a few to direct light.
 TEST(CornellBox, MatchesVarianceByBounce) {
   covers("light-37");
   const std::vector<Bounce> bounces = by_bounce(8, 128, 6);
@@ -158,9 +158,9 @@ TEST(CornellBox, MatchesVarianceByBounce) {
   EXPECT_NEAR(share(3), 0.11, 0.08);
 }
 
-// Compares with paths of 17 bounces. After eight bounces, 0.37 % of the reflected red light is lost (the lamp
-// is visible), and 0.172 % of the whole image. Cycles (Blender 3.4.1) loses 0.1722 % +- 0.0011 %. The ledger
-// assumes the maximum radiance for omitted rays.
+// Compares paths of 8 bounces with paths of 17. The shorter paths lose 0.37 % of the reflected red light and
+// 0.172 % of the red light of the image, which includes the lamp. Cycles (Blender 3.4.1) loses 0.1722 % +-
+// 0.0011 %. The ledger assumes the maximum radiance for omitted rays.
 TEST(CornellBox, LosesNoMoreLightThanLedger) {
   covers("light-38");
   const auto box = load(sample("cornell-box"));
@@ -173,9 +173,9 @@ TEST(CornellBox, LosesNoMoreLightThanLedger) {
   EXPECT_LT(whole.stats.omitted.mean(), 0.02 * cut.stats.omitted.mean());
 }
 
-// Means over the image and their standard errors by Cycles, an independent renderer, with 0 to 6 bounces.
-// From `tests/bench/run cycles --bounces --samples 64 --seeds 8` with 128 x 128 pixels and 16 seeds. Blender
-// 3.4.1 of Debian 12, all biased options off.
+// Means over the image and their standard errors for 0 to 6 bounces, measured with Cycles (Blender 3.4.1 of
+// Debian 12) without any biased option. Generated by `tests/bench/run cycles --bounces --samples 64 --seeds
+// 8` (128 x 128 pixels, 8 pairs of seeds).
 struct Measured {
   Vec3d mean, error;
 };
@@ -189,7 +189,7 @@ const std::array<Measured, 7> kCycles{{
     {{0.195424, 0.127114, 0.036403}, {0.000026, 0.000018, 0.000005}},
 }};
 
-// Errors that cancel over the whole image differ by path length.
+// Compares path lengths separately, because their errors could cancel in the image.
 TEST(CornellBox, MatchesCyclesByPathLength) {
   covers("light-36");
   constexpr int kSide = 128, kSeeds = 6;
@@ -212,7 +212,7 @@ TEST(CornellBox, MatchesCyclesByPathLength) {
                    theirs = kCycles[bounces].error[c];
       EXPECT_NEAR(sum[c], kCycles[bounces].mean[c], 3 * std::sqrt(variance + theirs * theirs))
           << bounces << " bounces, channel " << c;
-      EXPECT_LT(variance, std::pow(2e-3 * sum[c], 2)) << "or it tells nothing";
+      EXPECT_LT(variance, std::pow(2e-3 * sum[c], 2)) << "the comparison needs a small variance";
     }
   }
 }
@@ -232,8 +232,8 @@ double mean_squared_error(const std::shared_ptr<const Scene>& box, int side, int
   return squares / (3.0 * side * side * pairs);
 }
 
-// Returns the exponent of the root mean squared error from `fewest` samples to `most` by fours, by least
-// squares in logarithms.
+// Returns the slope of the logarithm of the root mean squared error against the logarithm of the sample
+// count. Fits counts from `fewest` to `most`, each four times the previous, by least squares.
 double slope(const std::shared_ptr<const Scene>& box, int side, int max_depth, int fewest, int most) {
   double x_sum = 0, y_sum = 0, xx = 0, xy = 0, n = 0;
   for (int samples = fewest; samples <= most; samples *= 4, ++n) {
@@ -248,17 +248,18 @@ double slope(const std::shared_ptr<const Scene>& box, int side, int max_depth, i
   return (n * xy - x_sum * y_sum) / (n * xx - x_sum * x_sum);
 }
 
-// Direct light has few dimensions and few edges, but many bounces have more dimensions than are stratified
-// together. (In very small images most pixels have edges, and few pixels most of the error.)
+// Direct light has few dimensions and few edges, so it converges fast. With many bounces there are more
+// dimensions than are stratified jointly. In very small images, most pixels have edges and few pixels have
+// most of the error.
 TEST(CornellBox, ConvergesFasterThanIndependentSamples) {
   covers("light-51");
-  if (kSanitized) GTEST_SKIP() << "twenty million paths";
+  if (kSanitized) GTEST_SKIP() << "traces 20 million paths";
   const auto box = load(sample("cornell-box"));
   EXPECT_LE(slope(box, 128, 1, 4, 256), -0.70);
   const double all = slope(box, 16, 9, 16, 4096);
   EXPECT_LE(all, -0.48);
   EXPECT_GE(all, -0.60);
-  // Single samples of several seeds are independent, so 64 of them have 1/64 of the variance.
+  // Single samples of different seeds are independent, so the mean of 64 has 1/64 of the variance.
   const double independent = mean_squared_error(box, 128, 1, 9, 8) / 64,
                stratified = mean_squared_error(box, 128, 64, 9, 1);
   EXPECT_NEAR(independent / stratified, 1.7, 0.4);

@@ -30,8 +30,8 @@ TEST(Ambient, ShowsAlbedoUnderUniformLight) {
   }
 }
 
-// A closed room with walls of emitted radiance Le and no reflections shows Le everywhere.
-TEST(Ambient, FillsAClosedRoom) {
+// In a closed room whose walls emit radiance Le and reflect nothing, the radiance is Le everywhere.
+TEST(Ambient, FillsClosedRoom) {
   const Json room = scene_of("[{'type': 'box', 'min': [-1, -2, -3], 'max': [3, 2, 1]}]",
                              "{'ambient': [2, 2, 2], 'materials': {'white': {'ka': 0.5, 'kd': 0}}}");
   Random random(2);
@@ -52,7 +52,8 @@ TEST(Point, FollowsCosineCubedLaw) {
   }
 }
 
-// Mean over the disc of a Lambert ball, with the light `phase` degrees from the eye.
+// Compares the mean radiance over the disc of a Lambert sphere with the phase function. The light is `phase`
+// degrees from the eye.
 TEST(Directional, MatchesPhasesOfLambertSphere) {
   covers("R5");
   RenderRequest request = in_double(size(256, 256));
@@ -127,8 +128,8 @@ TEST(Lights, KeepsValuesAboveOne) {
   EXPECT_EQ(picture.at(4, 4), Vec3f(2, 1, 1));
 }
 
-// A plane of 2 x 2 seen from 1 above its centre, under a distant light from above. With one half vector for
-// the whole plane, the corners would be as bright as the centre.
+// The camera is 1 m above the centre of a square of 2 m x 2 m, under a distant light from above. With a
+// single half vector for all points, the corners would be as bright as the centre.
 TEST(Highlight, UsesHalfVectorOfEachPoint) {
   covers("B6");
   const Json scene = scene_of("[{'type': 'box', 'min': [-1, -1, -1], 'max': [1, 1, 0]}]",
@@ -155,7 +156,8 @@ TEST(Lights, NeverGivesNegativeRadiance) {
   }
 }
 
-// Whitted's model has no caustics: glass casts a black shadow. This test pins that known error of the model.
+// Whitted's model has no caustics, so glass casts a black shadow. This test documents this error of the
+// model.
 TEST(Glass, CastsBlackShadow) {
   covers("E6");
   const Json scene =

@@ -9,7 +9,7 @@
 #include "tests/support/pictures.h"
 #include "tests/support/tracing.h"
 
-// Compares distributed ray tracing with closed forms, and with path tracing if both find the same light.
+// Compares distributed ray tracing with closed forms, and with path tracing where both find the same light.
 namespace orrery::test {
 namespace {
 
@@ -84,7 +84,7 @@ TEST(Distributed, MatchesPathTracingWithoutDiffuseLobes) {
   }
 }
 
-// Threads, slices and structures do not change the image, nor does scaling the scene by a power of two.
+// Neither threads, slices and structures nor scaling the scene by a power of two change the image.
 TEST(Distributed, IsIndependentOfThreadsStructureAndScale) {
   covers("light-7");
   Json own = without_filters(without_diffuse_lobes());
@@ -100,8 +100,8 @@ TEST(Distributed, IsIndependentOfThreadsStructureAndScale) {
   EXPECT_TRUE(identical(render(scene, request, 1), expected));
 }
 
-// Returns the share of the radiance of a ceiling 1 m above a floor point, from the rectangle between the
-// point above it and (a, b). Form factor of a corner (Howell, C-3).
+// Returns the fraction of the irradiance of a floor point under a uniform ceiling 1 m above that is due to
+// the rectangle between the point above it and (a, b). This is the form factor of a corner (Howell, C-3).
 double corner_share(double a, double b) {
   const double ra = std::sqrt(1 + a * a), rb = std::sqrt(1 + b * b);
   return (a / ra * std::atan(b / ra) + b / rb * std::atan(a / rb)) / (2 * kPi);
@@ -109,9 +109,9 @@ double corner_share(double a, double b) {
 
 class SoftShadow : public testing::TestWithParam<const char*> {};
 
-// A square lamp over a white floor, with a screen between them. A point sees the part of the lamp beyond the
-// screen's edge.
-TEST_P(SoftShadow, MatchesVisibleShareOfLamp) {
+// A square lamp is above a white floor, with a screen between them. A point is lit by the part of the lamp
+// beyond the edge of the screen.
+TEST_P(SoftShadow, MatchesVisiblePartOfLamp) {
   covers("light-17 light-22");
   Json scene = scene_of_materials(
       "[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]},"
@@ -122,7 +122,7 @@ TEST_P(SoftShadow, MatchesVisibleShareOfLamp) {
       "'black'}]",
       {{"black", "{'type': 'lambert', 'reflectance': 0}"}});
   scene["materials"]["white"] = json(GetParam());
-  // Edge at x = 0 half way up: the point at x sees the lamp from -x on.
+  // The edge is at x = 0, half way up, so the point at x sees the lamp from -x on.
   for (const double x : {-1.5, -0.4, 0.0, 0.7}) {
     const auto strip = [&](double to) { return (to < 0 ? -2 : 2) * corner_share(std::abs(to), 2); };
     const double expected = strip(2 - x) - strip(-x - x);
@@ -139,8 +139,8 @@ INSTANTIATE_TEST_SUITE_P(Floors, SoftShadow,
 
 class DiffuseRoom : public testing::TestWithParam<const char*> {};
 
-// Walls emit 1, reflect a share, and receive ambient light. Only direct and ambient light counts at any
-// depth. At depth 0, ambient light alone is added to the emission.
+// Walls emit 1, reflect half of the light, and receive ambient light. At depth 1 and more, direct and ambient
+// light are added to the emission. At depth 0 only ambient light is.
 TEST_P(DiffuseRoom, ShowsOnlyDirectAndAmbientLight) {
   covers("light-11");
   Json room = scene_of_materials(GetParam(), {}, "{'ambient': [0.3, 0.3, 0.3]}");
@@ -151,12 +151,12 @@ TEST_P(DiffuseRoom, ShowsOnlyDirectAndAmbientLight) {
     EXPECT_NEAR(found.mean, 1 + 0.5 * 0.3 + direct, 4 * found.error() + 1e-12) << depth;
   }
 }
-// Boxes cannot be sampled, so their light is found by rays of diffuse lobes. Spheres are sampled.
+// A box is not sampled from inside, so rays of diffuse lobes find its light. Spheres are sampled.
 INSTANTIATE_TEST_SUITE_P(Rooms, DiffuseRoom,
                          testing::Values("[{'type': 'box', 'min': [-1, -2, -3], 'max': [3, 2, 1]}]",
                                          "[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 2}]"));
 
-// A flat floor that reflects 0.6, under skies that are sampled or not.
+// A flat floor that reflects 0.6 is lit by skies that are sampled and skies that are not.
 TEST(Distributed, LightsDiffuseSurfacesFromSky) {
   covers("light-33");
   for (const char* sky :
@@ -171,8 +171,8 @@ TEST(Distributed, LightsDiffuseSurfacesFromSky) {
   }
 }
 
-// A lamp that cannot be sampled and one that can, over matt and coated floors. Compares with the direct light
-// of paths.
+// One lamp is sampled and another, an ellipsoid, is not. The test compares the light of both on matt and
+// coated floors with the direct light of path tracing.
 TEST(Distributed, CountsHitAndSampledLampsOnce) {
   covers("light-22");
   Json scene = scene_of_materials(
@@ -199,7 +199,7 @@ TEST(Distributed, CountsHitAndSampledLampsOnce) {
     const Picture distributed = render(loaded, following("distributed", 32, 256, 1, 2));
     EXPECT_NEAR(distributed.sum() / path.sum(), 1, 4e-3) << material;
   }
-  // Without a background that rays would look for anyway.
+  // Without a background, no rays are traced in order to find it.
   scene.erase("background");
   scene["materials"]["it"] = json("{'type': 'lambert', 'reflectance': 0.7}");
   const auto loaded = load(scene);
@@ -207,9 +207,9 @@ TEST(Distributed, CountsHitAndSampledLampsOnce) {
   EXPECT_NEAR(render(loaded, following("distributed", 32, 256, 1, 2)).sum() / by_path, 1, 4e-3);
 }
 
-// A convex ball under a sky sees nothing of itself, and so receives no light from other surfaces. Distributed
-// rays find all that paths find: direct light and the reflections of the coat.
-TEST(Distributed, FollowsCoatsButNotBases) {
+// A convex ball under a sky receives no light from surfaces. Distributed rays therefore find the same light
+// as paths: direct light and reflections of the coat.
+TEST(Distributed, MatchesPathsOnConvexCoatedBalls) {
   Json scene = scene_of_materials(
       "[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'it'}]", {},
       "{'environment': {'type': 'gradient', 'zenith': [1, 1, 1], 'horizon': [0.2, 0.2, "
@@ -226,7 +226,8 @@ TEST(Distributed, FollowsCoatsButNotBases) {
   }
 }
 
-// In front of a background as bright as ambient light, a white object is invisible, with or without a coat.
+// In front of a background with the radiance of ambient light, a white object is invisible, with or without a
+// coat.
 TEST(Ambient, HidesWhiteBeforeEqualBackground) {
   for (const char* white :
        {"{'type': 'plastic', 'roughness': 0, 'reflectance': 1}",
@@ -240,7 +241,8 @@ TEST(Ambient, HidesWhiteBeforeEqualBackground) {
       RenderRequest request = in_double(size(32, 32));
       request.technique = technique;
       request.samples = 4;
-      request.max_depth = technique == std::string("distributed") ? 0 : 5;  // the largest depth without noise
+      // The largest depth at which the image has no noise.
+      request.max_depth = technique == std::string("distributed") ? 0 : 5;
       const Picture picture = render(scene, request);
       const int border = *request.max_depth == 0 ? 12 : 0;  // the background has more samples than the ball
       for (int y = border; y < 32 - border; ++y)
@@ -249,8 +251,8 @@ TEST(Ambient, HidesWhiteBeforeEqualBackground) {
     }
 }
 
-// With ambient light alone, a polished floor mirrors a diffuse ceiling. The coat reflects by Fresnel's
-// equations, and the base shows the rest of the ambient light.
+// In ambient light, a polished floor mirrors a diffuse ceiling. The coat reflects by Fresnel's equations, and
+// the base reflects the transmitted ambient light.
 TEST(Distributed, ReflectsDiffuseWallsInCoat) {
   Json scene = scene_of_materials(
       "[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0], 'material': 'it'},"
@@ -270,8 +272,8 @@ TEST(Distributed, ReflectsDiffuseWallsInCoat) {
   }
 }
 
-// A sheet between the eye and a diffuse ceiling, in ambient light. The sheet reflects ambient light and
-// transmits the ceiling's radiance.
+// In ambient light, a translucent sheet is between the eye and a diffuse ceiling. The sheet reflects ambient
+// light and transmits the radiance of the ceiling.
 TEST(Distributed, TransmitsLightThroughSheets) {
   Json scene = scene_of_materials(
       "[{'type': 'rectangle', 'corner': [-500, 1, -500], 'edge_u': [1000, 0, 0], 'edge_v': [0, 0, 1000], "
@@ -283,14 +285,14 @@ TEST(Distributed, TransmitsLightThroughSheets) {
       "{'ambient': [1, 1, 1]}");
   const Estimate found = estimate(scene, Vec3d(0, 0, 0), Vec3d(0.1, 1, 0), 3, "distributed");
   EXPECT_NEAR(found.mean, 0.3 + 0.6 * 0.5, 4 * found.error() + 1e-9);
-  // An emissive ceiling is seen through the sheet directly, and adds nothing else.
+  // The emission of the ceiling is transmitted once. No other light is added.
   scene["materials"]["ceiling"]["emission"] = {2, 2, 2};
   scene["ambient"] = {0, 0, 0};
   const Estimate lit = estimate(scene, Vec3d(0, 0, 0), Vec3d(0.1, 1, 0), 1, "distributed");
   EXPECT_NEAR(lit.mean, 0.6 * 2, 4 * lit.error() + 1e-9);
 }
 
-// Only light between two diffuse walls is found by paths and not by distributed rays.
+// Only paths find light reflected between two diffuse walls.
 TEST(Distributed, OmitsLightBetweenDiffuseSurfaces) {
   Json scene = scene_of_materials(
       "[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]},"

@@ -7,7 +7,7 @@
 #include "tests/support/covers.h"
 #include "tests/support/tracing.h"
 
-// Tests closed rooms with closed forms of their radiance, by path length, and the effect of Russian roulette.
+// Tests closed rooms whose radiance has a closed form, by path length, and the effect of Russian roulette.
 namespace orrery::test {
 namespace {
 
@@ -21,7 +21,7 @@ RenderRequest alone(int max_depth, std::uint64_t seed = 0) {
 }
 Ray<double> from_to(const Vec3d& from, const Vec3d& to) { return {from, safe_normalize(to - from)}; }
 
-// Sums over independent paths of one ray.
+// Sums over independent paths along one ray.
 struct Moments {
   double sum = 0, squares = 0, fourth = 0, centre;  // sums of powers of differences from `centre`
   int count = 0;
@@ -39,7 +39,7 @@ struct Moments {
   double error_of_variance() const { return std::sqrt((fourth / count - variance() * variance()) / count); }
 };
 
-// Traces `batches` batches of one ray. Returns the mean number of rays of depth 1 and more per path.
+// Traces `batches` batches of the same ray. Returns the mean number of rays per path, without the camera ray.
 template <class Visit>
 double trace_paths(const Json& scene, const Ray<double>& ray, int max_depth, int batches,
                    const Visit& visit) {
@@ -54,8 +54,8 @@ double trace_paths(const Json& scene, const Ray<double>& ray, int max_depth, int
   return reflected / (batches * double{kBatch});
 }
 
-// Number of rays after the camera ray. The first is always traced, and each later one with probability rho,
-// at most `most`. Mean and variance follow from P(N >= k) = rho^(k-1).
+// Number of rays after the camera ray, at most `most`. The first ray is always traced, and each later one
+// with probability rho. Mean and variance follow from P(N >= k) = rho^(k-1).
 struct Survivors {
   double mean = 0, variance = 0;
   Survivors(double rho, int most) {
@@ -68,10 +68,10 @@ struct Survivors {
   }
 };
 
-// Walls emit 1 and reflect rho, and are found by BSDF sampling alone. From the second vertex on, a path of
-// throughput beta = rho^2 survives with probability sqrt(beta) = rho, and then has throughput rho again. Each
-// later ray adds rho, and the sum is 1 + rho N. Without a depth limit its mean is 1 / (1 - rho), its variance
-// rho^3 / (1 - rho)^2.
+// Walls emit 1, reflect rho, and are found only by BSDF sampling. From the second vertex on, a path of
+// throughput beta = rho^2 survives with probability sqrt(beta) = rho. Its throughput is then rho again. Each
+// later ray adds rho, so the radiance of N rays is 1 + rho N. Without a depth limit its mean is 1 / (1 -
+// rho), and its variance rho^3 / (1 - rho)^2.
 TEST(ClosedRoom, MatchesRouletteMeanVarianceAndRayCount) {
   covers("R2 light-12");
   constexpr int kBatches = 98, kDepth = 32;
@@ -86,15 +86,15 @@ TEST(ClosedRoom, MatchesRouletteMeanVarianceAndRayCount) {
     Moments found(1 + rho * expected.mean);
     const double rays = trace_paths(room, from_to(Vec3d(0.1, 0.2, 0.3), Vec3d(1, 0.4, -0.5)), kDepth,
                                     kBatches, [&](double radiance) { found.add(radiance); });
-    EXPECT_NEAR(found.mean(), 1 + rho * rays, 1e-9) << "each ray brings rho";
+    EXPECT_NEAR(found.mean(), 1 + rho * rays, 1e-9) << "each ray adds rho";
     EXPECT_NEAR(found.mean(), 1 + rho * expected.mean, 4 * found.error()) << rho;
     EXPECT_NEAR(found.variance() / (rho * rho * expected.variance), 1, 0.03) << rho;
     EXPECT_NEAR(rays, expected.mean, 4 * found.error() / rho) << rho;
   }
 }
 
-// For paths that reach the depth limit the ledger has their throughput: rho each, and rho^D on average.
-// Continued, each would have found rho / (1 - rho) per unit of throughput.
+// The ledger contains the throughput of paths that reach depth D. Each has throughput rho, and the mean over
+// all paths is rho^D. The omitted continuation would have found rho / (1 - rho) per unit of throughput.
 TEST(ClosedRoom, RecordsCutThroughputInLedger) {
   covers("light-38");
   for (const double rho : {0.5, 0.8})
@@ -115,8 +115,8 @@ TEST(ClosedRoom, RecordsCutThroughputInLedger) {
     }
 }
 
-// A dome of radius 1 over a floor. Any point of the dome sees half floor and half dome, and the floor sees
-// only the dome. Both emit 1 and reflect different shares.
+// A dome of radius 1 over a floor. From any point of the dome, floor and dome each have form factor 1/2. From
+// the floor, only the dome is visible. Both emit 1 and have different reflectances.
 TEST(ClosedRoom, MatchesExchangeBetweenDomeAndFloor) {
   covers("light-13");
   const Json room = scene_of(
@@ -143,9 +143,9 @@ TEST(ClosedRoom, MatchesExchangeBetweenDomeAndFloor) {
   EXPECT_NEAR(floor, 1 + 0.2 * dome, 1e-7);
 }
 
-// A disk lamp closes a sphere and replaces a tenth of its area. Every wall point sees a tenth lamp by the
-// cosine, the rest wall, and the lamp sees only wall. Radiance by the number of reflections since the lamp:
-// wall' = rho (0.9 wall + 0.1 lamp), lamp' = rho wall.
+// A disk lamp replaces a tenth of the area of a sphere. From each point of the wall, the form factor of the
+// lamp is 0.1 and that of the wall 0.9. From the lamp only the wall is visible. The radiance after each
+// reflection is wall' = rho (0.9 wall + 0.1 lamp), lamp' = rho wall.
 TEST(ClosedRoom, MatchesEachReflectionInSphere) {
   covers("light-14");
   const Json room = scene_of(
@@ -173,8 +173,8 @@ TEST(ClosedRoom, MatchesEachReflectionInSphere) {
   }
 }
 
-// A sphere of radius 1 around a point light that makes its wall read rho: each reflection is rho times the
-// last.
+// A point light at the centre of a sphere of radius 1 causes a radiance of rho on its wall. Each reflection
+// has rho times the radiance of the previous one.
 TEST(ClosedRoom, MatchesIntegratingSphere) {
   covers("R4 light-15");
   constexpr int kDepth = 9;
@@ -190,7 +190,7 @@ TEST(ClosedRoom, MatchesIntegratingSphere) {
                                     [&](double radiance) { found.add(radiance); });
     EXPECT_NEAR(found.mean(), expected, 4 * found.error()) << rho;
     EXPECT_LT(found.error(), 0.01) << rho;
-    // Rays of the last depth add nothing, since no surface is emissive.
+    // Rays of the last depth add no light, because no surface emits.
     EXPECT_NEAR(found.variance() / (std::pow(rho, 4) * survivors.variance), 1, 0.05) << rho;
     EXPECT_NEAR(rays, Survivors(rho, kDepth).mean, 4 * found.error() / (rho * rho) * 1.3) << rho;
   }

@@ -34,7 +34,7 @@ double angle_between(const Vec3d& a, const Vec3d& b) {
   return std::atan2(length(cross(a, b)), dot(a, b)) / kRadians;
 }
 
-// Returns the rays of one depth that leave the body around the origin.
+// Returns the rays of one depth that leave the body at the origin.
 std::vector<Ray<double>> leaving(const Tracing& tracing, std::size_t depth) {
   std::vector<Ray<double>> found;
   for (const auto& ray : tracing.rays().at(depth))
@@ -42,7 +42,7 @@ std::vector<Ray<double>> leaving(const Tracing& tracing, std::size_t depth) {
   return found;
 }
 
-TEST(Slab, ShiftsRayWithoutTurningIt) {
+TEST(Slab, ShiftsRayWithoutChangingDirection) {
   covers("R18 D4");
   Tracing tracing(one_body("[{'type': 'box', 'min': [-50, -50, -0.5], 'max': [50, 50, 0.5]}]", 1.5),
                   depth(2));
@@ -64,7 +64,7 @@ TEST(Slab, ShiftsRayWithoutTurningIt) {
   }
 }
 
-TEST(Prism, DeviatesLeastOnSymmetricPath) {
+TEST(Prism, HasMinimumDeviationOnSymmetricPath) {
   covers("R19");
   // An equilateral prism along y. Its upper edge is at z = sqrt 3, its base at z = 0.
   const double edge = std::sqrt(3.0);
@@ -76,8 +76,8 @@ TEST(Prism, DeviatesLeastOnSymmetricPath) {
       mesh["positions"].push_back(numbers(corner));
   Tracing tracing(one_body(Json::array({mesh}).dump().c_str(), 1.5), depth(2));
   const auto deviation = [&](double incidence_degrees) {
-    // The ray enters the left face, whose inward normal is 30 degrees below +x, in its middle, and runs along
-    // the base.
+    // The ray enters the left face in its middle and runs along the base. The inward normal of this face is
+    // 30 degrees below +x.
     const double a = (incidence_degrees - 30) * kRadians;
     const Vec3d direction(std::cos(a), 0, std::sin(a)), middle(-0.5, 0.1, edge / 2);
     const Ray<double> in{middle - direction * 2, direction};
@@ -98,7 +98,7 @@ TEST(Prism, DeviatesLeastOnSymmetricPath) {
 TEST(WaterDrop, MatchesRainbowAngle) {
   covers("R20");
   Tracing tracing(unit_ball(1.333), depth(3));
-  const auto deviation = [&](double h) {  // one reflection inside
+  const auto deviation = [&](double h) {  // with one internal reflection
     const Ray<double> in{{h, 0, 5}, {0, 0, -1}};
     tracing.trace(in);
     const auto out = leaving(tracing, 3);
@@ -154,7 +154,7 @@ TEST(CornerReflector, ReversesEveryRay) {
   }
 }
 
-// From under water the whole sky is in a window of 48.6 degrees.
+// From under water, the whole sky is visible within 48.6 degrees of the vertical.
 TEST(WaterSurface, ShowsSkyInSnellsWindow) {
   covers("R25");
   Json scene = one_body("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 0, 1]}]", 1.333);
@@ -176,7 +176,7 @@ TEST(WaterSurface, ShowsSkyInSnellsWindow) {
   EXPECT_NEAR(lowest, 48.606626, 5e-7);
   EXPECT_NEAR(sky(0), 1 - std::pow(.333 / 2.333, 2), 1e-12);
   EXPECT_NEAR(std::pow(std::sin(lowest * kRadians), 2), .562781, 5e-7)
-      << "the window's share of the light that arrives";
+      << "fraction of the cosine-weighted hemisphere";
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include "tests/support/pictures.h"
 #include "tests/support/tracing.h"
 
-// Compares materials in path-traced scenes with closed forms and sums over lamps.
+// Compares materials in path-traced scenes with closed forms and with numerical integrals over lamps.
 namespace orrery::test {
 namespace {
 
@@ -21,8 +21,8 @@ double mean_of(const Json& scene, int side, int samples, int max_depth, int reus
   return render(scene, request).sum() / (side * side);
 }
 
-// A sky of 1 through glass over a floor that reflects rho. The glass transmits t, and the floor shows rho t /
-// (1 - rho (1 - t)).
+// A glass slab is between a sky of radiance 1 and a floor of reflectance rho. If the glass transmits t, the
+// radiance of the floor is rho t / (1 - rho (1 - t)).
 TEST(PathMaterials, MatchesFloorUnderGlassSlab) {
   covers("light-32");
   Json scene = scene_of(
@@ -36,7 +36,7 @@ TEST(PathMaterials, MatchesFloorUnderGlassSlab) {
   EXPECT_NEAR(mean_of(scene, 64, 128, 64), 0.5 * kPasses / (1 - 0.5 * (1 - kPasses)), 1e-3);
 }
 
-// A lossless ball is invisible against a uniform sky. Each scattering event is off by at most a thousandth.
+// A lossless ball is invisible against a uniform sky. Each scattering event has an error of at most 0.1 %.
 TEST(PathMaterials, HidesGlassUnderUniformLight) {
   covers("light-30");
   for (const double roughness : {0.0, 0.4, 1.0}) {
@@ -49,9 +49,9 @@ TEST(PathMaterials, HidesGlassUnderUniformLight) {
   }
 }
 
-// A disk in the shadow of a glass ball receives no light from a point, but a caustic from a lamp in its
-// place.
-TEST(PathMaterials, FocusesLampsButNotPointsThroughGlass) {
+// A disk in the shadow of a glass ball receives no light from a point light. A lamp at the same place causes
+// a caustic.
+TEST(PathMaterials, FocusesLampsButNotPointLightsThroughGlass) {
   covers("light-53");
   Json scene = scene_of(
       "[{'type': 'disk', 'center': [0, -1, 0], 'normal': [0, 1, 0], 'radius': 0.5},"
@@ -62,23 +62,24 @@ TEST(PathMaterials, FocusesLampsButNotPointsThroughGlass) {
   EXPECT_EQ(estimate_alone(scene, from, below, 6, 16).mean, 0);
   constexpr double kRadius = 0.3;
   scene["lights"] = Json::array();
-  scene["materials"]["lamp"]["emission"] = Json(3, 1 / (kRadius * kRadius));  // as bright as the point
+  // Same intensity as the point light.
+  scene["materials"]["lamp"]["emission"] = Json(3, 1 / (kRadius * kRadius));
   scene["objects"].push_back(
       {{"type", "sphere"}, {"center", {0, 3, 0}}, {"radius", kRadius}, {"material", "lamp"}});
   const Estimate found = estimate_alone(scene, from, below, 6, 64);
-  EXPECT_GT(found.mean, 2.0 / 16) << "twice what the lamp alone, 4 m above, would make it";
+  EXPECT_GT(found.mean, 2.0 / 16) << "twice the radiance due to the lamp without the ball";
   EXPECT_LT(found.error(), 0.05 * found.mean);
 }
 
 struct Lit {
   const char* name;
   const char* text;
-  double lamp_height;  // below 0: light is transmitted
+  double lamp_height;  // negative if light is transmitted
 };
 class LampIllumination : public testing::TestWithParam<Lit> {};
 
-// One point of a wide surface under a square lamp. Light and BSDF sampling with MIS give the sum over the
-// lamp of the evaluated material, and so does BSDF sampling alone.
+// Compares the radiance at a point below a square lamp with the integral of the evaluated material over the
+// lamp. Both MIS and BSDF sampling alone must agree with it.
 TEST_P(LampIllumination, MatchesIntegralOverLamp) {
   covers("light-22");
   const auto& [name, text, height] = GetParam();
@@ -118,13 +119,13 @@ TEST_P(LampIllumination, MatchesIntegralOverLamp) {
                      {"look_at", {0, 0, 0}},
                      {"fov_degrees", 1e-4}};
   EXPECT_NEAR(mean_of(scene, 32, 256, 1) / sum, 1, 0.01) << name;
-  // The lamp is in a model with an instance.
+  // The lamp is instanced.
   Json model = scene;
   model["models"]["lamp"]["objects"] = Json::array({scene["objects"].back()});
   model["objects"].erase(model["objects"].size() - 1);
   model["instances"] = json("[{'model': 'lamp'}]");
   EXPECT_NEAR(mean_of(model, 32, 256, 1) / sum, 1, 0.01) << name;
-  // Lights with keyframes within their model are not sampled, so BSDF sampling alone finds them.
+  // Lights with keyframes inside a model are not sampled, so only BSDF sampling finds them.
   const double x0 = kAside - kSide / 2, x1 = kAside + kSide / 2, z = kSide / 2;
   model["models"]["lamp"]["objects"] =
       Json::array({{{"type", "mesh"},
@@ -146,10 +147,11 @@ INSTANTIATE_TEST_SUITE_P(
                     Lit{"TranslucentAbove", "{'type': 'translucent'}", 1}),
     [](const auto& parameter) { return std::string(parameter.param.name); });
 
-// Returns the radiance of a floor at the origin in directions where `sees` a lamp of radiance 1.
+// Returns the radiance of a white floor at the origin, lit with radiance 1 from directions d where sees(d) is
+// true.
 template <class Sees>
 double lit_by(const Sees& sees) {
-  constexpr int kSteps = 1000;  // in height and around: each cell has the same share of the cosine
+  constexpr int kSteps = 1000;  // steps in height and azimuth, with equal cosine-weighted cells
   double found = 0;
   for (int i = 0; i < kSteps; ++i)
     for (int j = 0; j < kSteps; ++j) {
@@ -160,7 +162,8 @@ double lit_by(const Sees& sees) {
   return found / kSteps / kSteps;
 }
 
-// Instances turn a ball into an ellipsoid and a square into a skewed one, with the light of those shapes.
+// Instances transform a ball into an ellipsoid and a square into a parallelogram. The light must be that of
+// the transformed shapes.
 TEST(PathMaterials, TransformsLampsByInstances) {
   const Vec3d centre(0.3, 1, 0), radii(0.8, 0.2, 0.4);
   const double ellipsoid = lit_by([&](const Vec3d& d) {
@@ -168,7 +171,8 @@ TEST(PathMaterials, TransformsLampsByInstances) {
     const Vec3d toward = safe_normalize(Vec3d(d.x / radii.x, d.y / radii.y, d.z / radii.z));
     return length(cross(from, toward)) < 1;
   });
-  const double skew = lit_by([](const Vec3d& d) {  // sides of (1, 0, 0.3) and (1, 0, -0.3) from (-1, 1, 0)
+  // Parallelogram at (-1, 1, 0) with sides (1, 0, 0.3) and (1, 0, -0.3).
+  const double skew = lit_by([](const Vec3d& d) {
     const double sum = d.x / d.y + 1, difference = d.z / d.y / 0.3;
     return std::abs(difference) < std::min(sum, 2 - sum);
   });
@@ -193,9 +197,10 @@ TEST(PathMaterials, TransformsLampsByInstances) {
               1, 0.01);
 }
 
-// Stripes of chalk and of dark polished plastic, under a ceiling lit by a spot light. Samples of the coat go
-// through a mirror, those of chalk never do. Path reuse must weight a shared sample by the densities of all
-// lobes, not by the one that drew it. The plastic is too dark to offset an excess at the chalk.
+// Stripes of chalk and of dark polished plastic are below a ceiling lit by a spot light. Samples of the coat
+// are mirrored, and those of chalk never are. Path reuse must weight a shared sample by the densities of all
+// lobes, not only by that of the lobe that generated it. The plastic is too dark to offset excess light on
+// the chalk.
 TEST(PathMaterials, WeightsSharedSamplesThroughMirrors) {
   covers("light-9");
   Json scene = scene_of("[{'type': 'plane', 'point': [0, 2, 0], 'normal': [0, -1, 0], 'material': 'chalk'}]",

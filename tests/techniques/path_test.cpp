@@ -11,8 +11,8 @@
 namespace orrery::test {
 namespace {
 
-// Returns a lamp over a floor of reflectance 1. Views from the side see the floor below the lamp, but not the
-// lamp.
+// Returns a lamp over a floor of reflectance 1. A camera at the side sees the floor below the lamp, but not
+// the lamp.
 Json over_floor(const Json& lamp) {
   Json scene = scene_of(
       "[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]}]",
@@ -28,8 +28,8 @@ const Vec3d kBelow(0, 0, 0), kBeside(30, 0.05, 0);
 
 class PathFurnace : public testing::TestWithParam<const char*> {};
 
-// In a closed room whose walls emit 1 and reflect a share, every point shows the sum of the powers of that
-// share.
+// In a closed room whose walls emit 1 and reflect rho, the radiance is the sum of the powers of rho up to the
+// depth limit.
 TEST_P(PathFurnace, SumsAllBounces) {
   covers("R2 light-11");
   const Json room = scene_of(GetParam(), "{'materials': {'white': {'kd': 0.5, 'emission': [1, 1, 1]}}}");
@@ -45,7 +45,8 @@ INSTANTIATE_TEST_SUITE_P(
                     "[{'type': 'cylinder', 'base': [0.3, -2, 1], 'top': [-0.2, 1, -2], 'radius': 3}]",
                     "[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 2}]"));
 
-// Unit square over a point, by height. `sd` is the relative standard deviation of a sample by solid angle.
+// A unit square at different heights above a point. `sd` is the relative standard deviation of one sample by
+// solid angle.
 TEST(Path, MatchesIrradianceOfSquare) {
   covers("R9 light-17 light-19");
   struct Case {
@@ -69,7 +70,8 @@ TEST(Path, MatchesIrradianceOfSphereAndDisk) {
   EXPECT_NEAR(disk.mean, 0.25 / (4 + 0.25), 4 * disk.error() + 1e-9);
 }
 
-// Adds balls of radiance 1. The floor reads the sum of (radius / distance)^2 times the cosine.
+// Adds balls of radiance 1, and adds to `irradiance` the sum of (radius / distance)^2 times the cosine, the
+// radiance of the floor.
 Json with_balls(Json scene, const std::vector<Vec3d>& from_point, const Vec3d& point,
                 double share_of_distance, double& irradiance) {
   for (const Vec3d& centre : from_point) {
@@ -85,7 +87,7 @@ const Json kWhiteFloor = scene_of(
     "[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]}]",
     "{'materials': {'white': {'kd': 1}, 'lamp': {'type': 'rough', 'kd': 0, 'emission': [1, 1, 1]}}}");
 
-// Large balls, which BSDF samples hit as often as light samples do, with small ones around another place.
+// BSDF samples and light samples hit large balls equally often. Small balls are added at another place.
 TEST(Path, MatchesIrradianceOfNearAndFarLamps) {
   covers("light-17");
   const Vec3d point(3, 0, 2);
@@ -115,7 +117,7 @@ TEST(Path, AddsSunAndLamp) {
   EXPECT_NEAR(found.mean / expected, 1, 4 * found.error() / expected);
 }
 
-// A reflective lamp alone in the dark is flat or seen from outside, so that nothing can light it.
+// A reflective lamp in an empty scene is flat, or convex and seen from outside, so no light reaches it.
 TEST(Path, AvoidsSelfLightingOfConvexLamps) {
   struct Lamp {
     const char* text;
@@ -140,8 +142,8 @@ TEST(Path, AvoidsSelfLightingOfConvexLamps) {
   }
 }
 
-// An emitter that encloses all else is not sampled, since every point sees it from inside. The samples go to
-// other lamps.
+// An emitter that encloses all other objects is not sampled, because every point sees it from inside. The
+// samples are used for other lamps.
 TEST(Path, SkipsLightSamplingOfEnclosingLamps) {
   const auto is_drawn_from = [](std::string_view objects) {
     const Json scene =
@@ -156,12 +158,12 @@ TEST(Path, SkipsLightSamplingOfEnclosingLamps) {
   };
   for (const std::string& around : {room, tank}) {
     EXPECT_FALSE(is_drawn_from("[" + around + "," + ball(1) + "]"));
-    EXPECT_TRUE(is_drawn_from("[" + around + "," + ball(3) + "]")) << "it lights what is outside";
+    EXPECT_TRUE(is_drawn_from("[" + around + "," + ball(3) + "]")) << "the emitter lights an object outside";
   }
 }
 
-// A square of 100,352 triangles. Each vertex of a path samples one of them.
-TEST(Path, MatchesOneEmitterWithMany) {
+// Compares a square with a mesh of 100,352 triangles. Each vertex of a path samples one of them.
+TEST(Path, MatchesSingleEmitterWithManyTriangles) {
   constexpr int kSide = 224;
   Json positions = Json::array(), indices = Json::array();
   for (int y = 0; y <= kSide; ++y)
@@ -184,7 +186,7 @@ TEST(Path, MatchesOneEmitterWithMany) {
   }
 }
 
-// Path reuse changes neither the mean nor the distribution of light, and lowers the error of a pixel.
+// Path reuse does not change the mean, and lowers the error of a pixel.
 TEST(Path, ChangesOnlyNoiseWithPathReuse) {
   covers("light-8 light-9");
   const auto box = load(sample("cornell-box"));
@@ -212,7 +214,7 @@ TEST(Path, ChangesOnlyNoiseWithPathReuse) {
   }
 }
 
-// Light found through a mirror by some paths could not have been sampled by others.
+// Paths of other pixels could not have sampled light that one path finds through a mirror.
 TEST(Path, ExcludesMirrorLightFromReuse) {
   const auto room = load(scene_of(
       "[{'type': 'box', 'min': [-2, -1, -2], 'max': [2, 2, 5]}, {'type': 'sphere', 'center': [0.9, -0.4, 0],"
@@ -232,7 +234,6 @@ TEST(Path, ExcludesMirrorLightFromReuse) {
   EXPECT_NEAR(mean(16) / mean(1), 1, 0.006);
 }
 
-// Slices and the number of threads do not change the image.
 TEST(Path, IsIndependentOfSlicesAndThreads) {
   covers("light-7");
   const auto box = load(sample("cornell-box"));

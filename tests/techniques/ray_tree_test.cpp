@@ -7,7 +7,7 @@
 #include "tests/support/pictures.h"
 #include "tests/support/tracing.h"
 
-// Tests the growth and the end of ray trees: by depth, by weight, and in the counters.
+// Tests growth and termination of ray trees: by depth, by weight, and in the counters.
 namespace orrery::test {
 namespace {
 
@@ -28,7 +28,7 @@ Json mirrors(double reflectance, double ambient) {
       json("[{'type': 'plane', 'point': [0, 0, -5], 'normal': [0, 0, 1]}, {'type': 'plane', 'point': [0, 0, "
            "5], 'normal': [0, 0, -1]}]"),
       Json{{"ambient", {ambient, ambient, ambient}},
-           {"background", {1, 1, 1}},  // never visible
+           {"background", {1, 1, 1}},  // not visible between the mirrors
            {"materials",
             {{"white", {{"type", "reflective"}, {"kd", nullptr}, {"n", {n, n, n}}, {"k", {0, 0, 0}}}}}}});
 }
@@ -50,8 +50,8 @@ Json slabs(int count, double reflectance) {
 }
 const Ray<double> kDown{{0, 0, 5}, {0, 0, -1}};
 
-// At depth 5, mirrors of .9 omit .53 of the light. At depth 10, mirrors of .99 omit .90. The ledger has that
-// share, and ambient light replaces it.
+// At depth 5, mirrors of reflectance .9 omit .53 of the light. At depth 10, mirrors of .99 omit .90. The
+// ledger contains this fraction, and ambient light replaces it.
 TEST(DepthLimit, RecordsRemainingLightOfFacingMirrors) {
   covers("E1");
   for (const auto& [reflectance, depth] : {std::pair{.5, 5}, {.9, 5}, {.99, 10}, {.9, 32}}) {
@@ -64,9 +64,9 @@ TEST(DepthLimit, RecordsRemainingLightOfFacingMirrors) {
   EXPECT_NEAR(Tracing(mirrors(.99, 0), limits(10)).trace(kUpright()).cut, .90, .005);
 }
 
-// A room with glass walls that reflect `albedo` at normal incidence, under a sky of 1 / (1 - albedo). Each
-// wall transmits 1 into the room and reflects `albedo` of the light inside. After n walls a ray has gathered
-// (1 - albedo^n) / (1 - albedo), and with the ledger 1 / (1 - albedo).
+// A room has glass walls that reflect `albedo` at normal incidence, under a sky of 1 / (1 - albedo). Each
+// wall transmits radiance 1 into the room and reflects `albedo` of the light inside. After n walls, the
+// radiance of a ray is (1 - albedo^n) / (1 - albedo). With the ledger it is 1 / (1 - albedo).
 TEST(ClosedRoom, SumsGeometricSeriesForRefractiveWalls) {
   covers("R2");
   const auto seen = [](double albedo, int walls) {
@@ -87,7 +87,7 @@ TEST(ClosedRoom, SumsGeometricSeriesForRefractiveWalls) {
   EXPECT_NEAR(seen(0.9, 32), (1 - std::pow(0.9, 32)) / 0.1, 1e-11);
 }
 
-TEST(DepthLimit, EndsPerfectMirrorsAndReportsCut) {
+TEST(DepthLimit, TerminatesForPerfectMirrorsAndReportsOmission) {
   covers("E4");
   const Picture picture = render(mirrors(1, 0), [] {
     RenderRequest r = limits(32);
@@ -104,21 +104,21 @@ TEST(DepthLimit, EndsPerfectMirrorsAndReportsCut) {
   EXPECT_EQ(picture.stats.non_finite_pixels, 0u);
 }
 
-// At a threshold of 1/255, an evenly splitting tree ends at depth 8, where every branch carries 1/256. The
-// ledger bounds the error by the sum of the branches. With four surfaces of reflectance 1/2, two slabs
+// With a threshold of 1/255, an evenly splitting tree ends at depth 8, where each branch has weight 1/256.
+// The sum of the branches in the ledger bounds the error. Two slabs, with four surfaces of reflectance 1/2,
 // transmit 1/5.
 TEST(Threshold, SumsOmittedBranchesInLedger) {
   covers("E2");
   const TraceOutput coarse = Tracing(slabs(2, .5), limits(32, 1.0 / 255)).trace(kDown);
-  EXPECT_GT(std::abs(coarse.radiance.x - .2), 1.0 / 255) << "each branch is small, together they are not";
+  EXPECT_GT(std::abs(coarse.radiance.x - .2), 1.0 / 255) << "each branch is small, but not their sum";
   EXPECT_LE(std::abs(coarse.radiance.x - .2), coarse.cut);
   const TraceOutput fine = Tracing(slabs(2, .5), limits(32, 1e-5)).trace(kDown);
   EXPECT_LE(std::abs(fine.radiance.x - .2), fine.cut);
   EXPECT_LT(fine.cut, coarse.cut / 5);
 }
 
-// One strong branch: each surface of a slab reflects .9. Without a threshold, the error is that of the depth
-// limit alone.
+// Each surface of the slab reflects .9, so one branch has most of the weight. Without a threshold, only the
+// depth limit causes an error.
 TEST(Threshold, IsDisabledByDefault) {
   covers("E3");
   EXPECT_EQ(load(slabs(1, .9))->render.min_contribution, 0);
@@ -127,19 +127,19 @@ TEST(Threshold, IsDisabledByDefault) {
   EXPECT_LE(std::abs(with.radiance.x - exact), with.cut);
   const TraceOutput without = Tracing(slabs(1, .9), limits(32)).trace(kDown);
   EXPECT_LE(std::abs(without.radiance.x - exact), without.cut);
-  EXPECT_LE(without.cut, .1 * std::pow(.9, 30)) << "what is still between the surfaces after 30 of them";
-  // A corridor that ends: six mirrors of .9 and then the sky give .9^6, nearly to the last bit.
+  EXPECT_LE(without.cut, .1 * std::pow(.9, 30)) << "light left in the slab after 30 reflections";
+  // After six mirrors of .9, the ray reaches ambient light, for a radiance of .9^6.
   EXPECT_NEAR(Tracing(mirrors(.9, 1), limits(5)).trace(kUpright()).radiance.x, std::pow(.9, 6), 1e-4);
 }
 
-// Rays are traced while they carry at least the threshold in some channel. The count for a slab's series (1 -
-// R) R^j follows from the formula.
+// A ray is traced if its weight is at least the threshold in some channel. The expected count follows from
+// the series (1 - R) R^j of a slab.
 TEST(Threshold, AppliesToEachRay) {
   constexpr double kR = .5;
   for (const double threshold : {0.4, 0.2, 0.1, 0.01, 0.0011}) {
     Tracing tracing(slabs(1, kR), limits(32, threshold));
     tracing.trace(kDown);
-    std::uint64_t inside = 0, up_and_down = kR >= threshold;  // the ray mirrored at the top carries R
+    std::uint64_t inside = 0, up_and_down = kR >= threshold;  // the ray reflected at the top has weight R
     for (int j = 0; j < 32; ++j) {
       if ((1 - kR) * std::pow(kR, j) < threshold) break;
       ++inside;
@@ -150,9 +150,9 @@ TEST(Threshold, AppliesToEachRay) {
   }
 }
 
-// If each surface sends two rays on, the tree at most doubles from one depth to the next. The number of
-// objects does not matter.
-TEST(RayTree, GrowsWithBranchesNotObjects) {
+// If each surface spawns two rays, the tree at most doubles with each depth. The number of objects has no
+// influence.
+TEST(RayTree, GrowsWithBranchesButNotWithObjects) {
   Tracing tracing(slabs(3, .3), limits(10));
   tracing.trace(kDown);
   const RayCounts& rays = tracing.counts().rays;
@@ -172,7 +172,8 @@ TEST(RayTree, GrowsWithBranchesNotObjects) {
   EXPECT_EQ(among.counts().rays.total(), rays.total());
 }
 
-// From the middle of the slabs no ray leaves in time, and every surface sends two rays on: 2^d rays.
+// Within the depth limit, no ray from the middle of the slabs leaves them, and every surface spawns two rays.
+// There are 2^d rays at depth d.
 TEST(RayTree, DoublesPerLevelInsideSlabs) {
   constexpr int kDepth = 10;
   Tracing tracing(slabs(24, .3), limits(kDepth));
@@ -184,7 +185,7 @@ TEST(RayTree, DoublesPerLevelInsideSlabs) {
   }
 }
 
-// Without a structure every ray is tested against every object exactly once.
+// The list tests every ray against every object exactly once.
 TEST(RayTree, TestsEveryObjectPerRayWithList) {
   for (const int balls : {0, 1, 10, 100}) {
     Json scene = mirrors(.5, 1);
@@ -200,9 +201,9 @@ TEST(RayTree, TestsEveryObjectPerRayWithList) {
   }
 }
 
-// (m + 1) d N M rays: each of the d rays of a pixel sends m shadow rays from a surface with direct light.
-// Rough surfaces end the path here and mirrors have no direct light, so d is 1 without mirrors. Behind k
-// mirrors the pixel costs k + 1 rays and m shadow rays.
+// The number of rays is (m + 1) d N M for N x M pixels, where each of the d rays of a pixel traces m shadow
+// rays from a surface with direct light. Rough surfaces end the path and mirrors have no direct light, so d
+// is 1 without mirrors. Behind k mirrors, a pixel takes k + 1 rays and m shadow rays.
 TEST(RayTree, MatchesRayCountFormula) {
   const auto counts = [](int mirrors_on_the_way, int lights) {
     Json scene = json(
@@ -211,7 +212,7 @@ TEST(RayTree, MatchesRayCountFormula) {
     scene["materials"] = json(
         "{'silver': {'type': 'reflective', 'n': [0.1, 0.1, 0.1], 'k': [4, 4, 4]}, 'paint': {'type': "
         "'rough'}}");
-    // A periscope: each mirror turns the view upright or level again, and a painted wall stands at its end.
+    // The mirrors form a periscope: each deflects the view by 90 degrees. A painted wall is at its end.
     Vec3d at(0, 0, 0), direction(0, 0, -1);
     for (int i = 0; i < mirrors_on_the_way; ++i) {
       const Vec3d turned = direction.z != 0 ? Vec3d(0, 1, 0) : Vec3d(0, 0, -1);
@@ -246,13 +247,13 @@ TEST(RayTree, MatchesRayCountFormula) {
       EXPECT_EQ(rays.total(), (k + 1 + static_cast<std::uint64_t>(lights)) * kPixels);
       for (std::size_t depth = 1; depth <= k; ++depth) EXPECT_EQ(rays.reflected[depth], kPixels);
       EXPECT_EQ(rays.shadow[k], static_cast<std::uint64_t>(lights) * kPixels)
-          << "counted at the depth that sent them";
+          << "counted at the depth of the lit surface";
     }
   }
 }
 
-// Every bounce costs one ray and one test of each primitive, however faint the light.
-TEST(RayTree, CostsSameForFaintAndBrightRays) {
+// Every bounce takes one ray and one test per primitive, however small the weight.
+TEST(RayTree, CostsSameForWeakAndStrongRays) {
   covers("A35");
   for (const double reflectance : {.5, 1e-4}) {  // 1e-4 ^ 33 is below the smallest float
     RenderRequest request = in_float(limits(32));

@@ -6,11 +6,11 @@
 #include "tests/support/random.h"
 #include "tests/support/tracing.h"
 
-// Tests meshes with interpolated normals: light follows the geometric surface.
+// Tests meshes with interpolated normals. Light must follow the geometric surface.
 namespace orrery::test {
 namespace {
 
-// Returns a triangle in z = 0 whose normals lean outward by 60 degrees.
+// Returns a triangle in the plane z = 0 whose vertex normals are tilted outward by 60 degrees.
 Json leaning(const Json& material) {
   Json mesh =
       json(R"({'type': 'mesh', 'positions': [[-1, -1, 0], [1, -1, 0], [0, 1, 0]], 'indices': [[0, 1, 2]],
@@ -18,8 +18,8 @@ Json leaning(const Json& material) {
   return scene_with(mesh, Json{{"materials", {{"it", material}}}, {"background", {1, 1, 1}}});
 }
 
-// At a slant, the direction mirrored about a leaning normal points below the surface. The geometric normal is
-// used instead.
+// For slanted rays, the direction mirrored about a tilted normal would be below the surface. The geometric
+// normal is used instead.
 TEST(ShadingNormal, ReflectsNoRayIntoSurface) {
   covers("C12");
   Tracing tracing(leaning(json("{'type': 'reflective', 'n': [0, 0, 0], 'k': [0, 0, 0]}")));
@@ -34,13 +34,13 @@ TEST(ShadingNormal, ReflectsNoRayIntoSurface) {
     if (tracing.rays().size() < 2) continue;
     ++sent;
     sunk += !(tracing.rays()[1][0].direction.z > 0);
-    EXPECT_EQ(answer.radiance.x, 1) << "a perfect mirror under an even sky";
+    EXPECT_EQ(answer.radiance.x, 1) << "perfect mirror under a uniform sky";
   }
   EXPECT_GT(sent, 4'000);
   EXPECT_EQ(sunk, 0);
 }
 
-// A mirror never adds light, however its normals lean.
+// A mirror never creates light, for any tilt of its normals.
 TEST(ShadingNormal, CreatesNoLight) {
   Tracing tracing(leaning(json("{'type': 'reflective', 'n': [0.14, 0.16, 0.13], 'k': [4.1, 2.3, 3.1]}")));
   Random random(2);

@@ -10,7 +10,7 @@
 #include "tests/support/materials.h"
 #include "tests/support/tracing.h"
 
-// Compares light sampling, BSDF sampling, and both with MIS: three estimates of one number.
+// Compares estimates of the same radiance by light sampling, BSDF sampling, and both with MIS.
 namespace orrery::test {
 namespace {
 
@@ -21,7 +21,7 @@ struct Named {
   const char* name;
   const char* text;
 };
-// Lamps partly in the mirror direction of the viewer.
+// Lamps, partly in the mirrored direction of the viewer.
 const std::vector<Named> kLamps = {
     {"Rectangle",
      "{'type': 'rectangle', 'corner': [-2, 1.5, -0.8], 'edge_u': [1.5, 0, 0], 'edge_v': [0, 0.3, 1.6]}"},
@@ -70,7 +70,8 @@ const std::vector<Named> kMaterials = {
 
 bool is_light(const Json& lamp) { return lamp["type"] == "directional"; }
 
-// Returns the lamp alone, or over a small surface at the origin. (Every scene needs an object.)
+// Returns a scene of the lamp alone, or over a small surface at the origin if `material` is given. Every
+// scene needs an object.
 Json scene_of_lamp(const Json& lamp, const Json* material) {
   Json scene = scene_of("[{'type': 'sphere', 'center': [0, -90, 0], 'radius': 1, 'material': 'black'}]",
                         "{'materials': {'white': {}, 'black': {'type': 'lambert', 'reflectance': 0},"
@@ -96,7 +97,7 @@ Json scene_of_lamp(const Json& lamp, const Json* material) {
   return scene;
 }
 
-// Returns mean and standard deviation over slots, whose samples are averaged.
+// Returns mean and standard deviation over the elements of a batch.
 Estimate of_slots(const std::vector<double>& slots) {
   double sum = 0, squares = 0;
   for (const double slot : slots) {
@@ -114,7 +115,7 @@ Probe<double>::Case view(const Vec3d& light) {
   return one;
 }
 
-// Estimates by light sampling alone. Each part of the lamp is equally likely.
+// Estimates by light sampling alone. Each part of the lamp has the same probability.
 Estimate by_light(const Json& lamp, const Probe<double>& material, int samples) {
   const Tracing lit(scene_of_lamp(lamp, nullptr));
   const Geometry<double>& geometry = *lit.world().geometry;
@@ -173,9 +174,9 @@ Estimate by_both(const Json& lamp, const Json& material, int samples) {
 
 class SamplingStrategies : public testing::TestWithParam<Named> {};
 
-// MIS is as good as the better strategy, unless light sampling alone has almost no noise. In that case the
-// BSDF samples, despite their small weight, raise the deviation by up to a quarter.
-TEST_P(SamplingStrategies, AgreesForEveryMaterial) {
+// All three estimates agree. MIS is as good as the better strategy, unless light sampling alone has almost no
+// noise. In that case BSDF samples raise the deviation by up to a quarter.
+TEST_P(SamplingStrategies, AgreeForEveryMaterial) {
   covers("light-22");
   const Json lamp = json(GetParam().text);
   for (const auto& [name, text] : kMaterials) {

@@ -7,7 +7,7 @@
 #include "tests/support/random.h"
 #include "tests/support/tracing.h"
 
-// Tests the transmittance of glass: closed forms, furnaces, and the omissions of a limited depth.
+// Tests the transmittance of glass with closed forms, furnaces, and limited depths.
 namespace orrery::test {
 namespace {
 
@@ -37,7 +37,7 @@ Ray<double> slanted(double degrees) {
   const Vec3d direction(std::sin(degrees * kRadians), 0, -std::cos(degrees * kRadians));
   return {Vec3d(0, 0, 0.5) - direction, direction};
 }
-// Returns the same slab with dark below and light above, to show reflected light.
+// Returns the same slab with black below and the sky above, to show reflected light.
 Json slab_from_below(double filter = 1) {
   Json scene = slab(filter);
   scene["objects"][1]["point"] = {0, 0, -9};
@@ -54,7 +54,7 @@ TEST(Slab, TransmitsLessAtSlantedAngles) {
   covers("R17 D10");
   Tracing tracing(slab(), depth(32));
   EXPECT_NEAR(tracing.trace(slanted(45)).radiance.x, .90432679, 5e-9);
-  EXPECT_NEAR(tracing.trace(slanted(60)).radiance.x, .83623246, 5e-9) << "unpolarised at each surface";
+  EXPECT_NEAR(tracing.trace(slanted(60)).radiance.x, .83623246, 5e-9) << "unpolarized light at each surface";
   EXPECT_NEAR(tracing.trace(slanted(80)).radiance.x, .44122917, 5e-9);
 }
 
@@ -65,7 +65,7 @@ TEST(Slab, AbsorbsOnEveryPass) {
   EXPECT_NEAR(Tracing(slab_from_below(half), depth(32)).trace(slanted(0)).radiance.x, .05356949, 5e-9);
 }
 
-// 0, 1 and 2 round trips inside, and the ledger of the omitted rest.
+// Traces 0, 1 and 2 round trips inside the slab. The ledger bounds the error.
 TEST(Slab, BoundsTruncationErrorByLedger) {
   covers("D9");
   const double expected[] = {.9216, .92307456, .9230769193};
@@ -97,7 +97,7 @@ TEST(Ball, AttenuatesByChord) {
               1e-12);
 }
 
-// Lossless glass of any closed shape is invisible under a sky of 1, for any light path.
+// Glass of any closed shape that absorbs no light is invisible under a uniform sky of radiance 1.
 TEST(Furnace, HidesGlassUnderUniformSky) {
   covers("R3 D11");
   for (const char* object : {"{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}",
@@ -127,9 +127,9 @@ TEST(Furnace, HidesGlassUnderUniformSky) {
       }
 }
 
-// The mean over the disc of a ball is 7.3 % low without internal reflections, 1.15 % with one and .081 % with
-// four. The ledger has exactly these values.
-TEST(Furnace, MatchesShortfallOfLimitedDepth) {
+// With limited depth, the mean radiance over the disc of a ball is 7.3 % too low without internal
+// reflections, 1.15 % with one and .081 % with four. The ledger equals this error.
+TEST(Furnace, MatchesErrorOfLimitedDepth) {
   covers("D11");
   const Json scene = scene_of(
       "[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]",

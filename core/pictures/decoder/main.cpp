@@ -1,4 +1,4 @@
-// Program orrery-decode: decodes one picture file in a separate process with limited memory and CPU time. A
+// Program orrery-decode: decodes one image file in a separate process with limited memory and CPU time. A
 // file that exploits or crashes a library cannot harm the calling process.
 
 #include <OpenImageIO/filesystem.h>
@@ -76,7 +76,7 @@ void limit_process() {
   setrlimit(RLIMIT_CORE, &none);
 }
 
-// Allows `bytes` in addition to the memory that is mapped so far.
+// Allows `bytes` in addition to kDecoderRoom and the memory that is already mapped.
 void limit_memory([[maybe_unused]] std::uint64_t bytes) {
 #ifndef ORRERY_SANITIZED  // the sanitizer's own memory counts as data
   const rlim_t most = mapped_data() + orrery::kDecoderRoom + bytes;
@@ -90,7 +90,7 @@ std::span<std::byte> map_input() {
   if (fstat(STDIN_FILENO, &status) != 0 || status.st_size <= 0) fail("input is missing");
   const auto size = static_cast<std::size_t>(status.st_size);
   void* const start = mmap(nullptr, size, PROT_READ, MAP_SHARED, STDIN_FILENO, 0);
-  if (start == MAP_FAILED) fail("input cannot be mapped");
+  if (start == MAP_FAILED) fail("cannot map the input");
   return {static_cast<std::byte*>(start), size};
 }
 
@@ -185,7 +185,7 @@ int main(int argc, char** argv) {
   try {
     run(argv[1], std::strtoull(argv[2], nullptr, 10));
   } catch (const std::bad_alloc&) {
-    fail("decoding takes more memory than the size of the image explains");
+    fail("decoding needs more memory than the image size allows");
   } catch (const std::exception& error) {
     fail_damaged(error.what());
   }

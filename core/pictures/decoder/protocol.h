@@ -6,17 +6,17 @@ namespace orrery {
 
 // Protocol between read_picture() and the program orrery-decode. The command line is
 //  orrery-decode PLUGIN BYTES
-// with the name of OpenImageIO's reader and the memory that it may allocate for this picture. Standard input
-// is the picture file. The program writes a DecodedHeader to standard output, then either `text_bytes` of an
-// error message or `width` x `height` texels. A texel is linear light: red, green and blue as float. Rows are
-// ordered from top to bottom.
+// PLUGIN is the name of an OpenImageIO reader. BYTES is the memory that the program may allocate for this
+// image. Standard input is the image file. The program writes a DecodedHeader to standard output, then either
+// `text_bytes` of an error message or `width` x `height` texels. A texel is linear light: red, green and blue
+// as float. Rows are ordered from top to bottom.
 struct DecodedHeader {
-  std::uint32_t text_bytes;  // 0 if the picture was decoded
+  std::uint32_t text_bytes;  // 0 if the image was decoded
   std::uint32_t width, height;
 };
 
-// Memory of a decoder for any picture. kDecoderBytes covers the pages that OpenImageIO's libraries write to
-// while they load (42 MB, `grep RssAnon /proc/PID/status`). kDecoderRoom is for tables and rows.
+// Memory of a decoder for any image, in bytes. kDecoderBytes covers the pages that OpenImageIO's libraries
+// write to while they load (42 MB, `grep RssAnon /proc/PID/status`). kDecoderRoom is for tables and rows.
 inline constexpr std::uint64_t kDecoderBytes = 48 << 20;
 inline constexpr std::uint64_t kDecoderRoom = 6 << 20;
 

@@ -48,8 +48,8 @@ std::uint64_t extent(std::uint32_t first, std::uint32_t last) {
   return between < 0 ? 0 : static_cast<std::uint64_t>(between) + 1;
 }
 
-// Reads one header up to its empty name and adds the number of its attributes. Returns false if the header
-// has none.
+// Reads one header, up to the empty attribute name at its end. Adds the number of its attributes to
+// `attributes`. Returns false if the header has none.
 bool read_header(ByteReader& reader, int& attributes, PictureFile& file) {
   std::uint64_t rows = kBlockRows, tile_width = 0;
   Attribute attribute{{}, {}, ByteReader({})};
@@ -71,7 +71,7 @@ bool read_header(ByteReader& reader, int& attributes, PictureFile& file) {
     }
   }
   // Memory of a row of blocks or tiles: compressed, uncompressed, and in texel order, with 4 bytes per
-  // sample. A tile may extend beyond the picture.
+  // sample. A tile may extend beyond the image.
   constexpr std::uint64_t kMaxSide = 1 << 16, kCopies = 3;
   const std::uint64_t width = std::min(std::max(file.width, tile_width), kMaxSide);
   file.decoder_bytes =
@@ -81,8 +81,8 @@ bool read_header(ByteReader& reader, int& attributes, PictureFile& file) {
 
 }  // namespace
 
-// Reads a magic number, flags and the header. A multi-part file has one header per part, and an empty one at
-// the end. The first header determines the size.
+// Reads the magic number, the flags and the header. A multi-part file has one header per part, and an empty
+// header at the end. The first header determines the size.
 void inspect_exr(std::string_view bytes, PictureFile& file) {
   constexpr std::uint32_t kDeep = 0x800, kManyParts = 0x1000;
   ByteReader reader(bytes);

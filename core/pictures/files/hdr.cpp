@@ -7,11 +7,11 @@
 namespace orrery {
 namespace {
 
-// Removes the next number from the text, such as 512 from "-Y 512 +X 1024", and returns it. `offset` is that
-// of the line in the file.
+// Removes the next number from the text, such as 512 from "-Y 512 +X 1024", and returns it. `offset` is the
+// position of the line in the file, in bytes.
 std::uint64_t side(std::string_view& text, std::size_t offset) {
   const std::size_t digits = text.find_first_of("0123456789");
-  if (digits == std::string_view::npos) fail_damaged(offset, "size must be like -Y 512 +X 1024");
+  if (digits == std::string_view::npos) fail_damaged(offset, "size must have the form -Y 512 +X 1024");
   std::uint64_t value = 0;
   const auto read = std::from_chars(text.data() + digits, text.data() + text.size(), value);
   text.remove_prefix(static_cast<std::size_t>(read.ptr - text.data()));

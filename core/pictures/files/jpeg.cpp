@@ -63,8 +63,8 @@ void skip_scan(std::string_view bytes, ByteReader& reader) {
 
 // Reads segments: a byte 255, a marker, a length of two bytes that includes itself, and the content. The
 // header of a scan is followed by entropy-coded data. Truncated files are rejected, because libjpeg would
-// invent the missing data. Scans are limited, because libjpeg decodes all scans of a progressive file when it
-// opens the file.
+// fill in the missing data. Scans are limited, because libjpeg decodes all scans of a progressive file when
+// it opens the file.
 void inspect_jpeg(std::string_view bytes, PictureFile& file) {
   constexpr int kMaxScans = 256;  // typical files have 10
   ByteReader reader(bytes);

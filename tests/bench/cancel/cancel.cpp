@@ -17,8 +17,9 @@
 #include "tests/bench/measuring.h"
 #include "tests/meshes/writers.h"
 
-// Measures the time from a stop request to the end of each stage of the work.
-//   cancel TIMES    stops each stage TIMES times, at moments spread over its duration; prints lines of JSON
+// Measures the time from a stop request to the end of each stage.
+//   cancel TIMES    stops each stage TIMES times, at moments spread over its duration
+// Prints lines of JSON.
 namespace orrery::bench {
 namespace {
 
@@ -113,8 +114,8 @@ std::shared_ptr<MemoryAccount> open_account() {
   return MemoryAccount::open([] { return [](std::size_t bytes, bool) { return bytes; }; });
 }
 
-// Returns the milliseconds from the stop request until the stage threw Cancelled, or nullopt if it had ended
-// before.
+// Runs the stage and requests a stop after `ms` milliseconds. Returns the milliseconds until the stage threw
+// Cancelled, or nullopt if it ended before the request.
 std::optional<double> stop_after(const Stage& stage, double ms) {
   std::stop_source source;
   const std::stop_token stop = source.get_token();

@@ -8,17 +8,16 @@
 #include "core/tuning/trial.h"
 #include "tests/bench/measuring.h"
 
-// Compares a BVH that was refitted to the motion of a scene, frame by frame, with one built for the last
-// frame.
-//   motion SCENE.json ready   preparing it for the last frame, given the one before
-//   motion SCENE.json rays    tracing some tiles of that frame
-// Prints facts of the frames in JSON. Then, for each input line "ours" (refitted) or "theirs" (built), runs
-// that side and prints its CPU seconds.
+// Compares a BVH that is refitted frame by frame to the motion of a scene with one built for the last frame.
+//   motion SCENE.json ready   prepares the last frame, starting from the previous one
+//   motion SCENE.json rays    traces some tiles of the last frame
+// Prints facts of the frames as JSON. For each input line "ours" (refitted) or "theirs" (built), it then runs
+// this side once and prints its CPU seconds.
 namespace orrery::bench {
 namespace {
 
 constexpr int kFrames = 40, kTiles = 64;
-constexpr double kMinRunSeconds = 0.1;  // minimum length of a run
+constexpr double kMinRunSeconds = 0.1;  // minimum duration of a run
 
 World<float> make(const std::shared_ptr<const Scene>& scene, const Plan& plan, double time,
                   const World<float>& before) {

@@ -1,34 +1,37 @@
-// HTTP client of low CPU use: one keep-alive connection, one request at a time.
+// HTTP client with low CPU use: one keep-alive connection, at most one open request.
 
 import net from "node:net";
 
-const kWait_ms = 70_000; // timeout of a response; a picture may take 60 s
+const WAIT_MS = 70_000; // response timeout, above the 60 s that an image may take
 
-function read_head(buffer) {
+function readHead(buffer) {
   const end = buffer.indexOf("\r\n\r\n");
   if (end < 0) return null;
   const head = buffer.latin1Slice(0, end + 2);
   const status = Number(head.slice(9, 12));
   const length = /\r\ncontent-length: *(\d+)/i.exec(head);
-  const without_body = status === 304 || status === 204;
+  const withoutBody = status === 304 || status === 204;
   return {
     status,
     head,
-    total: end + 4 + (without_body ? 0 : Number(length?.[1] ?? 0)),
-    body_at: end + 4,
+    total: end + 4 + (withoutBody ? 0 : Number(length?.[1] ?? 0)),
+    bodyAt: end + 4,
     closes: /\r\nconnection: *close/i.test(head),
   };
 }
 
-export const header_of = ({ head }, name) => new RegExp(`\\r\\n${name}: *([^\\r]*)`, "i").exec(head)?.[1];
+export const headerOf = ({ head }, name) => new RegExp(`\\r\\n${name}: *([^\\r]*)`, "i").exec(head)?.[1];
 
 // Client for responses with a Content-Length, not for streams. A response is {status, head, text(), ms, sent,
 // first}:
-//   ms: since the request was written
-//   sent: time of the request by performance.now()
-//   first: whether this is the first request on its connection
-// A failed request gives {failure, sent, first}. The failure is "refused" (no connection), "unanswered" (the
-// connection closed before the response was complete), "silent" (timeout) or "left" (leave() was called).
+//   ms: milliseconds from the write of the request to the complete response
+//   sent: performance.now() when the request was written
+//   first: true if the request is the first on its connection
+// The result of a failed request is {failure, sent, first}. `failure` is
+//   "refused": no connection
+//   "unanswered": the connection closed before the response was complete
+//   "silent": timeout
+//   "left": leave() was called
 export class Client {
   #port;
   #address;
@@ -37,7 +40,7 @@ export class Client {
   #size = 0;
   #waiting = null; // {resolve, sent, answer}
 
-  // `address`: local address, undefined for any.
+  // `address`: local IP address, or undefined for any.
   constructor(port, address = undefined) {
     this.#port = port;
     this.#address = address;
@@ -54,7 +57,7 @@ export class Client {
         resolve,
         sent: null,
         answer: null,
-        without_body: method === "HEAD",
+        withoutBody: method === "HEAD",
         first: this.#socket === null,
       };
       if (this.#socket) this.#write(bytes);
@@ -62,11 +65,11 @@ export class Client {
     });
   }
 
-  get is_connected() {
+  get isConnected() {
     return this.#socket !== null;
   }
 
-  // Closes the connection, even during a request.
+  // Closes the connection. An open request resolves to the failure "left".
   leave() {
     this.#end("left");
   }
@@ -76,7 +79,7 @@ export class Client {
     this.#socket = socket;
     let connected = false;
     const end = () => socket === this.#socket && this.#end(connected ? "unanswered" : "refused");
-    socket.setTimeout(kWait_ms, () => socket === this.#socket && this.#waiting && this.#end("silent"));
+    socket.setTimeout(WAIT_MS, () => socket === this.#socket && this.#waiting && this.#end("silent"));
     socket.on("connect", () => {
       connected = true;
       this.#write(bytes);
@@ -97,8 +100,8 @@ export class Client {
     const waiting = this.#waiting;
     if (!waiting.answer) {
       this.#parts = [Buffer.concat(this.#parts)];
-      waiting.answer = read_head(this.#parts[0]);
-      if (waiting.answer && waiting.without_body) waiting.answer.total = waiting.answer.body_at;
+      waiting.answer = readHead(this.#parts[0]);
+      if (waiting.answer && waiting.withoutBody) waiting.answer.total = waiting.answer.bodyAt;
     }
     if (waiting.answer && this.#size >= waiting.answer.total) this.#finish();
   }
@@ -106,11 +109,11 @@ export class Client {
   #finish() {
     const { resolve, sent, answer, first } = this.#waiting;
     const ms = performance.now() - sent;
-    const parts = this.#parts; // concatenated on demand, as a large picture takes a while
+    const parts = this.#parts; // concatenated on demand, because this is slow for large images
     this.#waiting = null;
     this.#forget();
     if (answer.closes) this.leave();
-    resolve({ ...answer, text: () => Buffer.concat(parts).toString("utf8", answer.body_at), ms, sent, first });
+    resolve({ ...answer, text: () => Buffer.concat(parts).toString("utf8", answer.bodyAt), ms, sent, first });
   }
 
   #end(failure) {

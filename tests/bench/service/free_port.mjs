@@ -1,8 +1,8 @@
-// Resolves to a port of 127.0.0.1 that is free at the moment.
+// Resolves to a currently free TCP port of 127.0.0.1.
 
 import net from "node:net";
 
-export const free_port = () =>
+export const freePort = () =>
   new Promise((resolve, reject) => {
     const server = net.createServer();
     server.once("error", reject);

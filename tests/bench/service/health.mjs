@@ -1,17 +1,18 @@
-// Health checks while the pool and the queue are full.
+// Latency of health checks while all render slots are taken and the queue is full.
 
 import { Client } from "./client.mjs";
-import { closed_loop, most, ms, new_picture, none_row, p99, pause, percent, row, with_service } from "./support.mjs";
+import { closedLoop, most, ms, newPicture, noneRow, p99, pause, percent, row, withService } from "./support.mjs";
 
-const kClients = 100; // more than the slots and the queue hold
-const kEvery_ms = 20;
-const kTarget_ms = 50;
+const CLIENTS = 100; // more than slots plus queue entries
+const EVERY_MS = 20;
+const TARGET_MS = 50;
 
-// Sends a request every `every_ms` on a new connection, whether or not the last response has arrived.
-async function probe(port, path, seconds, every_ms = kEvery_ms) {
+// Sends a request every `everyMs` ms on a new connection, without waiting for the previous response. Resolves
+// to all responses. Their `ms` includes the time to connect.
+async function probe(port, path, seconds, everyMs = EVERY_MS) {
   const answers = [];
   const start = performance.now();
-  const count = (1000 * seconds) / every_ms;
+  const count = (1000 * seconds) / everyMs;
   for (let i = 0; i < count; ++i) {
     const asked = performance.now();
     const client = new Client(port);
@@ -20,7 +21,7 @@ async function probe(port, path, seconds, every_ms = kEvery_ms) {
       return { ...answer, ms: performance.now() - asked };
     });
     answers.push(answered);
-    await pause(Math.max(0, start + (i + 1) * every_ms - performance.now()));
+    await pause(Math.max(0, start + (i + 1) * everyMs - performance.now()));
   }
   return Promise.all(answers);
 }
@@ -30,40 +31,40 @@ function report(what, answers) {
   const bad = answers.filter((answer) => answer.status !== 200);
   return [
     row(
-      `${what}: p99 of ${answers.length}`,
-      `<= ${kTarget_ms} ms`,
+      `${what}: p99 of ${answers.length} requests`,
+      `<= ${TARGET_MS} ms`,
       `${ms(p99(times))} (max ${ms(most(times))})`,
-      p99(times) <= kTarget_ms,
+      p99(times) <= TARGET_MS,
     ),
-    none_row(`${what}: failures`, bad),
+    noneRow(`${what}: failures`, bad),
   ];
 }
 
-// Queue options: one waiting picture fills the queue, however large it is.
-const kShortQueue = ["--queue-rays", 1, "--interactive-rays", 1e12];
+// Options for a queue that is full as soon as one image of any size waits.
+const SHORT_QUEUE = ["--max-queued-rays", 1, "--interactive-rays", 1e12];
 
 async function run({ seconds }) {
-  return with_service(async (service, scenes) => {
-    const load = closed_loop(
+  return withService(async (service, scenes) => {
+    const load = closedLoop(
       service.port,
-      kClients,
-      () => new_picture(scenes.paper, 600, 64),
+      CLIENTS,
+      () => newPicture(scenes.paper, 600, 64),
       () => {},
       200,
     );
     await pause(1000);
     const [apart, main, ready] = await Promise.all([
-      probe(service.health_port, "/healthz", seconds),
+      probe(service.healthPort, "/healthz", seconds),
       probe(service.port, "/healthz", seconds),
-      probe(service.health_port, "/readyz", seconds, 500),
+      probe(service.healthPort, "/readyz", seconds, 500),
     ]);
     await load.stop();
     const full = ready.filter((answer) => answer.status === 503).length / ready.length;
     return {
       rows: [...report("/healthz, health port", apart), ...report("/healthz, main port", main)],
-      remark: `the queue was full in ${percent(full)} of the looks; each probe makes a connection, which is timed too`,
+      remark: `/readyz reported a full queue in ${percent(full)} of its responses; times include the connection`,
     };
-  }, kShortQueue);
+  }, SHORT_QUEUE);
 }
 
-export const kHealth = { name: "health", what: "/healthz while pool and queue are full", seconds: 60, run };
+export const HEALTH = { name: "health", what: "latency of /healthz while slots and queue are full", seconds: 60, run };

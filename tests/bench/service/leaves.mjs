@@ -1,39 +1,46 @@
-// Time from a client's disconnect to the end of its work.
+// Time from a client's disconnect to the end of its request in the service.
 
-import { Client, header_of } from "./client.mjs";
-import { put_asset, tiny_jpeg } from "./pictures.mjs";
+import { Client, headerOf } from "./client.mjs";
+import { putAsset, tinyJpeg } from "./pictures.mjs";
 import {
   Gauges,
-  closed_loop,
-  decoders_of,
-  kRendersAtOnce,
+  closedLoop,
+  decodersOf,
+  RENDERS_AT_ONCE,
   most,
   ms,
-  new_picture,
+  newPicture,
   p99,
   pause,
   row,
   until,
-  with_service,
+  withService,
 } from "./support.mjs";
-import { cpu_seconds } from "../daemon.mjs";
+import { cpuSeconds } from "../daemon.mjs";
 
-const kRunning_ms = 100;
-const kWaiting_ms = 50;
+const RUNNING_MS = 100;
+const WAITING_MS = 50;
 
-const is_idle = ({ running, waiting }) => running + waiting === 0;
+const isIdle = ({ running, waiting }) => running + waiting === 0;
 
-function report(what, times, target_ms) {
+function report(what, times, targetMs) {
   const lost = times.filter(Number.isNaN).length;
   const worst = most(times);
-  if (times.length === 0) return row(what, `all <= ${target_ms} ms`, "nobody left in time", false);
-  const measured = lost > 0 ? `${lost} never ended` : `max ${ms(worst)}, p99 ${ms(p99(times))}`;
-  return row(`${what}, ${times.length} times`, `all <= ${target_ms} ms`, measured, lost === 0 && worst <= target_ms);
+  if (times.length === 0)
+    return row(what, `all <= ${targetMs} ms`, "every response arrived before the disconnect", false);
+  const measured = lost > 0 ? `${lost} did not end within 30 s` : `max ${ms(worst)}, p99 ${ms(p99(times))}`;
+  return row(
+    `${what} (${times.length} disconnects)`,
+    `all <= ${targetMs} ms`,
+    measured,
+    lost === 0 && worst <= targetMs,
+  );
 }
 
-// Requests a picture and disconnects after `ready`. Resolves to the milliseconds until the gauges are `done`,
-// or to null if the response came first.
-async function leave_once(service, gauges, path, ready, done) {
+// Requests an image and disconnects when `ready()` has resolved. Resolves to the milliseconds from the
+// disconnect until `done(gauges)`, to NaN after a timeout, or to null if the response arrived before the
+// disconnect.
+async function leaveOnce(service, gauges, path, ready, done) {
   const client = new Client(service.port);
   const answer = client.ask(path);
   await ready();
@@ -43,10 +50,10 @@ async function leave_once(service, gauges, path, ready, done) {
   return failure === "left" ? took : null;
 }
 
-const is_time = (value) => value !== null;
+const isTime = (value) => value !== null;
 
-// Disconnects during tracing: some milliseconds into a picture that takes seconds.
-async function leave_tracing(service, gauges, scenes, times) {
+// Disconnects 0 to 10 ms after the start of a render that takes seconds.
+async function leaveTracing(service, gauges, scenes, times) {
   const took = [];
   for (let i = 0; i < times; ++i) {
     const scene = i % 2 === 0 ? scenes.paper : scenes.flake;
@@ -54,37 +61,37 @@ async function leave_tracing(service, gauges, scenes, times) {
       await gauges.until(({ running }) => running > 0);
       await pause(10 * Math.random());
     };
-    took.push(await leave_once(service, gauges, new_picture(scene, 600, 512), ready, is_idle));
+    took.push(await leaveOnce(service, gauges, newPicture(scene, 600, 512), ready, isIdle));
   }
-  return took.filter(is_time);
+  return took.filter(isTime);
 }
 
-// Disconnects at moments spread over a picture of the largest size, encoding included.
-async function leave_large(service, gauges, scenes, times) {
+// Disconnects at moments spread over the render and the encoding of a 4000x4000 image.
+async function leaveLarge(service, gauges, scenes, times) {
   const client = new Client(service.port);
-  const whole = await client.ask(new_picture(scenes.paper, 4000, 1));
-  const whole_ms = whole.ms;
+  const whole = await client.ask(newPicture(scenes.paper, 4000, 1));
+  const wholeMs = whole.ms;
   client.leave();
   const took = [];
   for (let i = 0; i < times; ++i) {
-    const ready = () => pause((whole_ms * (i + 0.5)) / times);
-    took.push(await leave_once(service, gauges, new_picture(scenes.paper, 4000, 1), ready, is_idle));
+    const ready = () => pause((wholeMs * (i + 0.5)) / times);
+    took.push(await leaveOnce(service, gauges, newPicture(scenes.paper, 4000, 1), ready, isIdle));
   }
   const part = (name) =>
-    Number(new RegExp(`${name};dur=([\\d.]+)`).exec(header_of(whole, "Server-Timing"))[1]).toFixed(0);
+    Number(new RegExp(`${name};dur=([\\d.]+)`).exec(headerOf(whole, "Server-Timing"))[1]).toFixed(0);
   return {
-    took: took.filter(is_time),
-    parts: `${part("render")} ms of tracing and ${part("encode")} ms of encoding`,
+    took: took.filter(isTime),
+    parts: `${part("render")} ms of rendering and ${part("encode")} ms of encoding`,
   };
 }
 
-// Disconnects while queued. The long pictures have cost this client its slots, so none of its new ones starts.
-async function leave_waiting(service, gauges, scenes, times) {
-  const count = 4 * kRendersAtOnce;
-  const load = closed_loop(
+// Disconnects while queued. Long renders of the same client take all slots, so that new requests stay queued.
+async function leaveWaiting(service, gauges, scenes, times) {
+  const count = 4 * RENDERS_AT_ONCE;
+  const load = closedLoop(
     service.port,
     count,
-    () => new_picture(scenes.paper, 600, 1024),
+    () => newPicture(scenes.paper, 600, 1024),
     () => {},
   );
   const took = [];
@@ -92,73 +99,73 @@ async function leave_waiting(service, gauges, scenes, times) {
     let before = {};
     await gauges.until((now) => {
       before = now;
-      return now.running === kRendersAtOnce && now.running + now.waiting === count;
+      return now.running === RENDERS_AT_ONCE && now.running + now.waiting === count;
     });
     const ready = () => gauges.until(({ running, waiting }) => running + waiting === count + 1);
     took.push(
-      await leave_once(
+      await leaveOnce(
         service,
         gauges,
-        new_picture(scenes.paper, 64, 1),
+        newPicture(scenes.paper, 64, 1),
         ready,
-        ({ left_queue }) => left_queue > before.left_queue,
+        ({ leftQueue }) => leftQueue > before.leftQueue,
       ),
     );
   }
   await load.stop();
-  return took.filter(is_time);
+  return took.filter(isTime);
 }
 
-const each_ms_until = (holds) => until(() => pause(1).then(holds));
+const eachMsUntil = (holds) => until(() => pause(1).then(holds));
 
-// Disconnects while a picture file is decoded, which takes seconds.
-async function leave_decoding(service, times) {
+// Disconnects while an image file is decoded. Decoding takes seconds.
+async function leaveDecoding(service, times) {
   const took = [];
   for (let i = 0; i < times; ++i) {
     const client = new Client(service.port);
-    const { path, ...request } = put_asset(tiny_jpeg(i, 60));
+    const { path, ...request } = putAsset(tinyJpeg(i, 60));
     const answer = client.ask(path, request);
-    await each_ms_until(() => decoders_of(service.pid).length > 0);
+    await eachMsUntil(() => decodersOf(service.pid).length > 0);
     await pause(200 * Math.random());
     client.leave();
-    const ended = await each_ms_until(() => decoders_of(service.pid).length === 0);
+    const ended = await eachMsUntil(() => decodersOf(service.pid).length === 0);
     if ((await answer).failure === "left") took.push(ended);
   }
   return took;
 }
 
-// Options for one lane of unlimited length, in which long pictures keep short ones waiting.
-const kOneLane = ["--interactive-rays", 1e12, "--queue-rays", 1e12];
+// Options for a single, unlimited queue, in which short renders wait behind long ones.
+const ONE_LANE = ["--interactive-rays", 1e12, "--max-queued-rays", 1e12];
 
 async function run({ times }) {
-  return with_service(async (service, scenes) => {
+  return withService(async (service, scenes) => {
     const gauges = new Gauges(service);
-    const tracing = await leave_tracing(service, gauges, scenes, times);
-    const before = cpu_seconds(service.pid);
+    const tracing = await leaveTracing(service, gauges, scenes, times);
+    const before = cpuSeconds(service.pid);
     await pause(500);
-    const left_over = (cpu_seconds(service.pid) - before) / 0.5;
-    const waiting = await leave_waiting(service, gauges, scenes, times);
-    await gauges.until(is_idle);
-    const decoding = await leave_decoding(service, Math.ceil(times / 20));
-    const large = await leave_large(service, gauges, scenes, Math.ceil(times / 20));
+    const leftOver = (cpuSeconds(service.pid) - before) / 0.5;
+    const waiting = await leaveWaiting(service, gauges, scenes, times);
+    await gauges.until(isIdle);
+    const decoding = await leaveDecoding(service, Math.ceil(times / 20));
+    const large = await leaveLarge(service, gauges, scenes, Math.ceil(times / 20));
     gauges.close();
     return {
       rows: [
-        report("left while traced: until no work runs", tracing, kRunning_ms),
-        report("left while queued: until its work is given up", waiting, kWaiting_ms),
-        report("left while a file is decoded: until no decoder runs", decoding, kRunning_ms),
-        report("left any time in 16 Mpixel: until no work runs", large.took, kRunning_ms),
+        report("disconnect while rendering: time until no render runs", tracing, RUNNING_MS),
+        report("disconnect while queued: time until removed from the queue", waiting, WAITING_MS),
+        report("disconnect while decoding: time until no decoder runs", decoding, RUNNING_MS),
+        report("disconnect from a 16-megapixel image: time until no render runs", large.took, RUNNING_MS),
       ],
       remark:
-        `the service took ${left_over.toFixed(2)} cores after those that were traced; ` +
-        `16 Mpixel take ${large.parts}; times include asking /metrics`,
+        `the service used ${leftOver.toFixed(2)} cores after the cancelled renders; ` +
+        `the 16-megapixel image takes ${large.parts}; times include requests of /metrics`,
     };
-  }, kOneLane);
+  }, ONE_LANE);
 }
 
-export const kLeaves = {
+export const LEAVES = {
   name: "leaves",
-  what: "clients that leave while their picture is traced or waits",
+  what: "cancellation of renders and decodings after a disconnect",
   times: 1000,
   run,
 };

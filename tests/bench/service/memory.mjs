@@ -1,38 +1,38 @@
-// Memory limit under attack, and latency of other clients.
+// Resident memory under attacks that allocate as much as possible, and latency of another client.
 
 import { createHash } from "node:crypto";
 import net from "node:net";
-import { kVictim, open_loop } from "./blockade.mjs";
+import { VICTIM, openLoop } from "./blockade.mjs";
 import { Client } from "./client.mjs";
-import { many_attributes_exr, put_asset, text_png, tiny_jpeg } from "./pictures.mjs";
+import { manyAttributesExr, putAsset, textPng, tinyJpeg } from "./pictures.mjs";
 import {
   Gauges,
-  kLayers,
-  memory_bound,
+  LAYERS,
+  memoryBound,
   mib,
   most,
   ms,
-  new_picture,
+  newPicture,
   outcome,
   p99,
   pause,
-  process_state,
+  processState,
   row,
   tally,
-  with_service,
+  withService,
 } from "./support.mjs";
 
-const kPicture_ms = 1000;
-const kAttackers = 16;
-const kAddresses = 8;
-const kSlow = 60; // connections that read or send slowly
+const PICTURE_MS = 1000;
+const ATTACKERS = 16;
+const ADDRESSES = 8;
+const SLOW = 60; // number of stalled connections
 
-const address = (i) => `127.0.0.${2 + (i % kAddresses)}`;
+const address = (i) => `127.0.0.${2 + (i % ADDRESSES)}`;
 const pick = (list) => list[Math.floor(Math.random() * list.length)];
 const json = (value) => ({ headers: { "Content-Type": "application/json" }, body: JSON.stringify(value) });
 
 let number = 0;
-function scene_of(objects, side = 64) {
+function sceneOf(objects, side = 64) {
   return {
     version: 1,
     title: `memory ${++number}`,
@@ -45,13 +45,13 @@ function scene_of(objects, side = 64) {
 }
 const ball = () => [{ type: "sphere", center: [0, 0, 0], radius: 0.5 + Math.random(), material: "m" }];
 
-// Returns an OBJ file of one polygon: one triangle per two bytes.
+// Returns an OBJ file of a single polygon. Each two bytes of the file make one triangle.
 function polygon(corners) {
   const fan = " 3 2".repeat(500);
   return `v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2${fan.repeat(corners / 1000)}\n`;
 }
 
-// Returns an OBJ file of a sheet without duplicate vertices.
+// Returns an OBJ file of a grid of side x side quads that share vertices.
 function sheet(side) {
   const lines = [];
   for (let y = 0; y <= side; ++y) for (let x = 0; x <= side; ++x) lines.push(`v ${x} ${y} ${(x * y) % 7}`);
@@ -63,20 +63,20 @@ function sheet(side) {
   return lines.join("\n") + "\n";
 }
 
-const kNested = `[${Array(330_000).fill("[[1]]").join(",")}]`;
-const kLongName = "x".repeat(4_000_000);
-const kNumbers = `[${Array(900_000).fill("1").join(",")}]`;
+const NESTED = `[${Array(330_000).fill("[[1]]").join(",")}]`;
+const LONG_NAME = "x".repeat(4_000_000);
+const NUMBERS = `[${Array(900_000).fill("1").join(",")}]`;
 
 async function put(port, text) {
   const client = new Client(port);
   const id = createHash("sha256").update(text).digest("hex");
   const answer = await client.ask(`/v1/assets/${id}`, { method: "PUT", body: text });
   client.leave();
-  if (answer.status >= 300) throw new Error(`the asset was answered ${outcome(answer)}: ${answer.text?.()}`);
+  if (answer.status >= 300) throw new Error(`PUT /v1/assets: ${outcome(answer)}: ${answer.text?.()}`);
   return id;
 }
 
-// Returns functions that make the next request of an attacker.
+// Returns the attackers' request generators. `assets`: ids of stored meshes.
 function requests(assets) {
   const render = (scene, options = {}, headers = {}) => {
     const request = json({ scene, render: options });
@@ -85,29 +85,29 @@ function requests(assets) {
   const mesh = (more = {}) => [{ type: "mesh", asset: pick(assets), material: "m", ...more }];
   const structures = ["list", "boxes", "bvh", "octree", "kd-sah", "grid", "obb-tree"];
   return [
-    () => render(scene_of(mesh())),
-    () => render(scene_of(mesh({ crease_degrees: 40 }))),
-    () => render(scene_of(mesh()), { accelerator: pick(structures), precision: "double" }),
-    () => render(scene_of(ball(), 4096)),
-    () => render(scene_of(ball(), 4096), {}, { Accept: "image/x-exr" }),
-    () => render(scene_of(ball(), 2900), { layers: ["depth", "normal"] }, { Accept: "image/x-exr" }),
-    () => render(scene_of(ball(), 390), kLayers, { Accept: "image/x-exr" }),
-    () => ({ path: "/v1/scenes", method: "POST", ...json(scene_of(mesh())) }),
-    () => ({ path: "/v1/render", method: "POST", headers: { "Content-Type": "application/json" }, body: kNested }),
-    () => ({ path: "/v1/render", method: "POST", headers: { "Content-Type": "application/json" }, body: kNumbers }),
-    () => ({ path: "/v1/jobs", method: "POST", ...json({ scene: scene_of(mesh()), frames: 50 }) }),
-    () => ({ path: "/v1/jobs", method: "POST", ...json({ scene: scene_of(ball(), 4096), frames: 50 }) }),
+    () => render(sceneOf(mesh())),
+    () => render(sceneOf(mesh({ crease_degrees: 40 }))),
+    () => render(sceneOf(mesh()), { accelerator: pick(structures), precision: "double" }),
+    () => render(sceneOf(ball(), 4096)),
+    () => render(sceneOf(ball(), 4096), {}, { Accept: "image/x-exr" }),
+    () => render(sceneOf(ball(), 2900), { layers: ["depth", "normal"] }, { Accept: "image/x-exr" }),
+    () => render(sceneOf(ball(), 390), LAYERS, { Accept: "image/x-exr" }),
+    () => ({ path: "/v1/scenes", method: "POST", ...json(sceneOf(mesh())) }),
+    () => ({ path: "/v1/render", method: "POST", headers: { "Content-Type": "application/json" }, body: NESTED }),
+    () => ({ path: "/v1/render", method: "POST", headers: { "Content-Type": "application/json" }, body: NUMBERS }),
+    () => ({ path: "/v1/jobs", method: "POST", ...json({ scene: sceneOf(mesh()), frames: 50 }) }),
+    () => ({ path: "/v1/jobs", method: "POST", ...json({ scene: sceneOf(ball(), 4096), frames: 50 }) }),
     () => ({ path: `/v1/assets/${pick(assets)}` }),
-    () => ({ path: "/v1/shares", method: "POST", headers: { "Content-Type": "application/json" }, body: kNumbers }),
-    () => ({ path: "/v1/scenes", method: "POST", ...json({ ...scene_of([]), materials: { m: { type: kLongName } } }) }),
-    () => put_asset(tiny_jpeg(++number)),
-    () => put_asset(text_png(++number)),
-    () => put_asset(many_attributes_exr(++number, 40_000)),
+    () => ({ path: "/v1/shares", method: "POST", headers: { "Content-Type": "application/json" }, body: NUMBERS }),
+    () => ({ path: "/v1/scenes", method: "POST", ...json({ ...sceneOf([]), materials: { m: { type: LONG_NAME } } }) }),
+    () => putAsset(tinyJpeg(++number)),
+    () => putAsset(textPng(++number)),
+    () => putAsset(manyAttributesExr(++number, 40_000)),
   ];
 }
 
-async function attack(client, makers, statuses, goes_on) {
-  while (goes_on()) {
+async function attack(client, makers, statuses, goesOn) {
+  while (goesOn()) {
     const { path, ...request } = pick(makers)();
     const answer = await client.ask(path, request);
     statuses.push(outcome(answer));
@@ -115,9 +115,9 @@ async function attack(client, makers, statuses, goes_on) {
   }
 }
 
-// Opens connections that read an asset or send a body, and then stall.
-function slow_connections(port, asset) {
-  return Array.from({ length: kSlow }, (_, i) => {
+// Opens SLOW connections. Three of four stall while receiving an asset, the others while sending a body.
+function slowConnections(port, asset) {
+  return Array.from({ length: SLOW }, (_, i) => {
     const socket = net.connect({ host: "127.0.0.1", port, localAddress: address(i) });
     socket.on("error", () => {});
     if (i % 4 > 0) {
@@ -132,14 +132,14 @@ function slow_connections(port, asset) {
 }
 
 async function run({ seconds }) {
-  return with_service(async (service, { paper }) => {
+  return withService(async (service, { paper }) => {
     const assets = [await put(service.port, polygon(8_000_000)), await put(service.port, sheet(500))];
-    const bound = await memory_bound(service.port);
+    const bound = await memoryBound(service.port);
     const gauges = new Gauges(service);
-    const small = open_loop(service.port, () => new_picture(paper, 64, 1), kVictim);
+    const small = openLoop(service.port, () => newPicture(paper, 64, 1), VICTIM);
     const statuses = [];
     let going = true;
-    const clients = Array.from({ length: kAttackers }, (_, i) => new Client(service.port, address(i)));
+    const clients = Array.from({ length: ATTACKERS }, (_, i) => new Client(service.port, address(i)));
     const attacks = clients.map((client) => attack(client, requests(assets), statuses, () => going));
     let slow = [];
     const resident = [];
@@ -147,9 +147,9 @@ async function run({ seconds }) {
     for (let i = 0; performance.now() < end; ++i, await pause(50)) {
       if (i % 200 === 0) {
         slow.forEach((socket) => socket.destroy());
-        slow = slow_connections(service.port, assets[0]);
+        slow = slowConnections(service.port, assets[0]);
       }
-      resident.push(process_state(service.pid).resident);
+      resident.push(processState(service.pid).resident);
     }
     going = false;
     slow.forEach((socket) => socket.destroy());
@@ -161,18 +161,18 @@ async function run({ seconds }) {
     const times = pictures.map((answer) => answer.ms ?? Infinity);
     return {
       rows: [
-        row("memory, most", `<= ${mib(bound)}`, mib(most(resident)), most(resident) <= bound),
-        row("small picture p99", `<= ${kPicture_ms} ms`, ms(p99(times)), p99(times) <= kPicture_ms),
-        row("small pictures refused", "0", bad.length ? tally(bad.map(outcome)) : "0", bad.length === 0),
+        row("maximum resident memory", `<= ${mib(bound)}`, mib(most(resident)), most(resident) <= bound),
+        row("p99 of small images", `<= ${PICTURE_MS} ms`, ms(p99(times)), p99(times) <= PICTURE_MS),
+        row("small images not answered with 200", "0", bad.length ? tally(bad.map(outcome)) : "0", bad.length === 0),
       ],
-      remark: `${statuses.length} requests of attackers got ${tally(statuses)}`,
+      remark: `outcomes of the ${statuses.length} attack requests: ${tally(statuses)}`,
     };
   });
 }
 
-export const kMemory = {
+export const MEMORY = {
   name: "memory",
-  what: "memory, and small pictures, while others ask for all the memory they can",
+  what: "memory, and latency of small images, under attacks that allocate memory",
   seconds: 60,
   run,
 };

@@ -1,9 +1,10 @@
-// Small picture files that cost a decoder much memory or time. `number` makes a file new to the service.
+// Small image files that are expensive to decode. `number` makes each file different, so that the service
+// cannot reuse a stored asset.
 
 import { createHash } from "node:crypto";
 import { deflateSync } from "node:zlib";
 
-const kSide = [16384, 2048];
+const SIDE = [16384, 2048];
 
 const u16 = (value) => [value >> 8, value & 255];
 function u32(value) {
@@ -12,11 +13,11 @@ function u32(value) {
   return bytes;
 }
 
-// Returns a segment of a JPEG file.
 const segment = (marker, bytes) => Buffer.from([0xff, marker, ...u16(bytes.length + 2), ...bytes]);
 
-// Returns the codes of a progressive scan of empty blocks: end-of-band runs of up to 32,767 blocks.
-function end_of_band_runs(blocks) {
+// Returns the bytes of a progressive scan in which all `blocks` are empty: end-of-band runs of up to 32,767
+// blocks each.
+function endOfBandRuns(blocks) {
   let bits = "";
   let left = blocks;
   for (; left >= 32767; left -= 32767) bits += "0" + "1".repeat(14);
@@ -31,13 +32,14 @@ function end_of_band_runs(blocks) {
   return bytes;
 }
 
-// Returns a progressive JPEG of 33 million pixels and 4 components in 360 bytes: libjpeg allocates 268 MB of
-// coefficients. Each further round of scans costs time.
-export function tiny_jpeg(number, rounds = 1) {
-  const [width, height] = kSide;
+// Returns a progressive JPEG with 33 million pixels and 4 components in about 360 bytes, for which libjpeg
+// allocates 268 MB of coefficients. `rounds`: number of scans per component. Decoding time is proportional to
+// it.
+export function tinyJpeg(number, rounds = 1) {
+  const [width, height] = SIDE;
   const components = [1, 2, 3, 4];
   const blocks = (width / 8) * (height / 8);
-  const codes = end_of_band_runs(blocks);
+  const codes = endOfBandRuns(blocks);
   const scan = (id) => [segment(0xda, [1, id, 0, 1, 63, 0]), Buffer.from(codes)];
   return Buffer.concat([
     Buffer.from([0xff, 0xd8]),
@@ -64,8 +66,8 @@ const chunk = (type, bytes) => {
   return Buffer.concat([u32(bytes.length), named, u32(crc32(named))]);
 };
 
-// Returns a PNG of 64 pixels with `count` compressed texts of 7.9 MB.
-export function text_png(number, count = 5) {
+// Returns a PNG of 8x8 pixels with `count` compressed texts of 7.9 MB each.
+export function textPng(number, count = 5) {
   const text = deflateSync(`${String(number).padStart(8, "0")}${"a".repeat(7_900_000)}`);
   const texts = Array.from({ length: count }, (_, i) => chunk("zTXt", Buffer.concat([Buffer.from(`k${i}\0\0`), text])));
   return Buffer.concat([
@@ -77,8 +79,8 @@ export function text_png(number, count = 5) {
   ]);
 }
 
-// Returns the header of an OpenEXR file with `count` attributes, and no pixels.
-export function many_attributes_exr(number, count = 2500) {
+// Returns an OpenEXR header with `count` additional attributes, without pixels.
+export function manyAttributesExr(number, count = 2500) {
   const attribute = (name, type, bytes) => {
     const size = Buffer.alloc(4);
     size.writeInt32LE(bytes.length);
@@ -101,5 +103,5 @@ export function many_attributes_exr(number, count = 2500) {
   ]);
 }
 
-export const asset_path = (bytes) => `/v1/assets/${createHash("sha256").update(bytes).digest("hex")}`;
-export const put_asset = (bytes) => ({ method: "PUT", path: asset_path(bytes), body: bytes });
+export const assetPath = (bytes) => `/v1/assets/${createHash("sha256").update(bytes).digest("hex")}`;
+export const putAsset = (bytes) => ({ method: "PUT", path: assetPath(bytes), body: bytes });

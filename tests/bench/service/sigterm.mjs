@@ -1,18 +1,19 @@
-// SIGTERM under load: earlier requests get complete responses, /readyz reports draining, the exit status is
-// 0.
+// SIGTERM under load: open requests must get complete responses, /readyz must report draining, and the exit
+// status must be 0.
 
-import { Client, header_of } from "./client.mjs";
-import { closed_loop, most, ms, new_picture, none_row, outcome, pause, row, tally, with_service } from "./support.mjs";
+import { Client, headerOf } from "./client.mjs";
+import { closedLoop, most, ms, newPicture, noneRow, outcome, pause, row, tally, withService } from "./support.mjs";
 
-const kClients = 32;
-const kGrace_s = 30;
+const CLIENTS = 32;
+const GRACE_S = 30;
 
-const is_whole = (answer) =>
-  answer.status === 200 || (answer.status === 503 && header_of(answer, "Retry-After") !== undefined);
+// Returns true for a complete response: an image, or a rejection with Retry-After.
+const isWhole = (answer) =>
+  answer.status === 200 || (answer.status === 503 && headerOf(answer, "Retry-After") !== undefined);
 
-// Resolves to the responses of /readyz until the service is gone.
-async function watch_readiness(service) {
-  const client = new Client(service.health_port);
+// Polls /readyz until connections are refused. Resolves to the responses as "STATUS STATE".
+async function watchReadiness(service) {
+  const client = new Client(service.healthPort);
   const said = [];
   for (let i = 0; i < 100_000; ++i) {
     const answer = await client.ask("/readyz");
@@ -24,18 +25,18 @@ async function watch_readiness(service) {
   return said;
 }
 
-async function one_end() {
-  return with_service(async (service, scenes) => {
+async function oneEnd() {
+  return withService(async (service, scenes) => {
     const answers = [];
-    const on_answer = (answer) => {
+    const onAnswer = (answer) => {
       answers.push(answer);
       return answer.failure !== "refused";
     };
-    const load = closed_loop(service.port, kClients, () => new_picture(scenes.paper, 200, 16), on_answer);
+    const load = closedLoop(service.port, CLIENTS, () => newPicture(scenes.paper, 200, 16), onAnswer);
     await pause(800 + 400 * Math.random());
     const signalled = performance.now();
     service.signal();
-    const said = watch_readiness(service);
+    const said = watchReadiness(service);
     const code = await service.gone;
     const took = performance.now() - signalled;
     await load.all;
@@ -45,41 +46,41 @@ async function one_end() {
   });
 }
 
-const whole_row = (what, answers) =>
-  none_row(
-    `${what}, ${answers.length}: not answered whole`,
-    answers.filter((answer) => !is_whole(answer)),
+const wholeRow = (what, answers) =>
+  noneRow(
+    `${what} (${answers.length}): no complete response`,
+    answers.filter((answer) => !isWhole(answer)),
   );
 
 async function run({ times }) {
   const ends = [];
-  for (let i = 0; i < times; ++i) ends.push(await one_end());
+  for (let i = 0; i < times; ++i) ends.push(await oneEnd());
   const after = ends.flatMap((end) => end.after);
   const kept = after.filter(({ first }) => !first);
-  const in_time = ends.every(({ code, took }) => code === 0 && took <= 1000 * kGrace_s);
+  const inTime = ends.every(({ code, took }) => code === 0 && took <= 1000 * GRACE_S);
   const told = ends.filter(({ said }) => said.includes("503 draining")).length;
-  const told_wrong = ends
+  const toldWrong = ends
     .flatMap(({ said }) => said.slice(said.indexOf("503 draining")))
     .filter((s) => s !== "503 draining");
   const slowest = most(ends.map(({ took }) => took));
   const exits = `${tally(ends.map(({ code }) => `exit ${code}`))}; at most ${ms(slowest)}`;
-  const ready = `${told} of ${times}${told_wrong.length > 0 ? `; then ${tally(told_wrong)}` : ""}`;
+  const ready = `${told} of ${times}${toldWrong.length > 0 ? `; later: ${tally(toldWrong)}` : ""}`;
   return {
     rows: [
-      whole_row(
-        "asked before the signal",
+      wholeRow(
+        "requests before the signal",
         ends.flatMap((end) => end.before),
       ),
-      whole_row(
-        "on connections made after it",
+      wholeRow(
+        "requests after the signal, new connections",
         after.filter(({ first }) => first),
       ),
-      row(`exit 0 within ${kGrace_s} s, ${times} times`, "all", exits, in_time),
-      row("/readyz said 503 draining meanwhile", "all", ready, told === times && told_wrong.length === 0),
+      row(`exit status 0 within ${GRACE_S} s, ${times} times`, "all", exits, inTime),
+      row("/readyz: 503 draining from the signal to the exit", "all", ready, told === times && toldWrong.length === 0),
     ],
-    // A client must expect that a keep-alive connection closes before its next request (RFC 9112, 9.3.1).
-    remark: `asked after the signal on a connection from before: ${tally(kept.map(outcome))}`,
+    // Without target: a server may close a keep-alive connection between requests (RFC 9112, 9.3.1).
+    remark: `requests after the signal, old connections: ${tally(kept.map(outcome))}`,
   };
 }
 
-export const kSigterm = { name: "sigterm", what: `SIGTERM while ${kClients} clients ask`, times: 10, run };
+export const SIGTERM = { name: "sigterm", what: `SIGTERM under the load of ${CLIENTS} clients`, times: 10, run };

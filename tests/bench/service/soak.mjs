@@ -1,33 +1,33 @@
-// Long mixed traffic: memory, threads and descriptors stay constant.
+// Long mixed traffic: memory, threads and descriptors must not grow.
 
 import { mkdirSync, writeFileSync } from "node:fs";
 import { Client } from "./client.mjs";
-import { acts_on } from "./traffic.mjs";
+import { actsOn } from "./traffic.mjs";
 import {
   Gauges,
   mean,
   mib,
-  none_row,
+  noneRow,
   outcome,
   pause,
   percent,
-  process_state,
+  processState,
   row,
   sparkline,
   tally,
-  with_service,
+  withService,
 } from "./support.mjs";
 
-const kSample_s = 10;
-const kSamples = 30; // every 10 s, more often in a short run
-const kMemory = 1.05;
-const kFew = 3;
-// Stores so small that each new scene or asset soon evicts another.
-const kStore = ["--store-bytes", 8 << 20, "--asset-bytes", 1 << 20, "--asset-store-bytes", 1 << 20];
-const kFile = "build/charts/soak.json"; // data of the sparklines
+const SAMPLE_S = 10;
+const SAMPLES = 30; // minimum number of samples, for short runs
+const MEMORY = 1.05;
+const FEW = 3;
+// Stores so small that scenes and assets are soon evicted.
+const STORE = ["--scene-cache-bytes", 8 << 20, "--asset-bytes", 1 << 20, "--asset-store-bytes", 1 << 20];
+const FILE = "build/charts/soak.json"; // all samples
 
-// Repeats `act` until the deadline, with pauses so that the machine is busy but not overloaded.
-async function keep_on(act, port, deadline, answers) {
+// Repeats `act` until the deadline, with random pauses that keep the machine below overload.
+async function keepOn(act, port, deadline, answers) {
   const client = new Client(port);
   while (performance.now() < deadline) {
     for (const { status, failure } of await act(client)) answers.push({ status, failure });
@@ -44,54 +44,54 @@ const thirds = (values) => {
 async function sample(service, deadline, seconds) {
   const gauges = new Gauges(service);
   const samples = [];
-  const every_ms = 1000 * Math.min(kSample_s, seconds / kSamples);
+  const everyMs = 1000 * Math.min(SAMPLE_S, seconds / SAMPLES);
   while (performance.now() < deadline) {
     const { stored } = await gauges.read();
-    samples.push({ at_s: performance.now() / 1000, stored, ...process_state(service.pid) });
-    await pause(every_ms);
+    samples.push({ atS: performance.now() / 1000, stored, ...processState(service.pid) });
+    await pause(everyMs);
   }
   gauges.close();
   return samples;
 }
 
-// Compares the mean of the last third of the samples with that of the middle third.
-function trend_row(samples, key, tell, allowed, target) {
+// Returns a row that compares the mean of the last third of the samples with that of the middle third.
+function trendRow(samples, key, tell, allowed, target) {
   const values = samples.map((one) => one[key]);
   const { middle, last } = thirds(values);
   const measured = `${tell(middle)} -> ${tell(last)} (${percent(last / middle - 1)})  ${sparkline(values)}`;
   return row(`${key}, last third relative to the middle third`, target, measured, last <= allowed(middle));
 }
 
-function rows_of(samples, answers) {
-  const share = percent(kMemory - 1);
-  const few = [(value) => value.toFixed(1), (middle) => middle + kFew, `<= ${kFew} more`];
+function rowsOf(samples, answers) {
+  const share = percent(MEMORY - 1);
+  const few = [(value) => value.toFixed(1), (middle) => middle + FEW, `<= ${FEW} more`];
   const wrong = answers.filter(({ status, failure }) => failure || (status >= 500 && status !== 503));
   return [
-    trend_row(samples, "resident", mib, (middle) => kMemory * middle, `<= ${share} more`),
-    trend_row(samples, "threads", ...few),
-    trend_row(samples, "descriptors", ...few),
-    none_row(`${answers.length} answers: 5xx other than 503, or none`, wrong),
+    trendRow(samples, "resident", mib, (middle) => MEMORY * middle, `<= ${share} more`),
+    trendRow(samples, "threads", ...few),
+    trendRow(samples, "descriptors", ...few),
+    noneRow(`${answers.length} requests: failed, or 5xx other than 503`, wrong),
   ];
 }
 
 async function run({ seconds }) {
-  return with_service(async (service, scenes) => {
+  return withService(async (service, scenes) => {
     const deadline = performance.now() + 1000 * seconds;
     const answers = [];
     const sampling = sample(service, deadline, seconds);
-    const acts = acts_on(scenes, service.port);
-    await Promise.all(acts.map((act) => keep_on(act, service.port, deadline, answers)));
+    const acts = actsOn(scenes, service.port);
+    await Promise.all(acts.map((act) => keepOn(act, service.port, deadline, answers)));
     const samples = await sampling;
     mkdirSync("build/charts", { recursive: true });
-    writeFileSync(kFile, JSON.stringify(samples));
+    writeFileSync(FILE, JSON.stringify(samples));
     return {
-      rows: rows_of(samples, answers),
-      remark: `answers: ${tally(answers.map(outcome))}; figures in ${kFile}`,
+      rows: rowsOf(samples, answers),
+      remark: `outcomes: ${tally(answers.map(outcome))}; samples: ${FILE}`,
     };
-  }, kStore);
+  }, STORE);
 }
 
-export const kSoak = {
+export const SOAK = {
   name: "soak",
   what: "memory, threads and descriptors under mixed traffic",
   seconds: 1200,

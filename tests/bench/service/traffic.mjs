@@ -1,17 +1,18 @@
-// Acts of clients for mixed traffic. Each act resolves to its responses.
+// Client actions for mixed traffic. An action takes the Client to use and resolves to its responses.
 
 import { createHash } from "node:crypto";
 import { readFileSync } from "node:fs";
 import net from "node:net";
-import { kFlake, kPaper, new_picture, pause } from "./support.mjs";
+import { FLAKE, PAPER, newPicture, pause } from "./support.mjs";
 import { FrameReader, send } from "../daemon.mjs";
 
 const number = (below) => Math.floor(below * Math.random());
 const json = { "Content-Type": "application/json" };
 
-// Returns an act that posts a new scene, renders it, and deletes it or leaves it to be evicted.
-function scenes_come_and_go() {
-  const scene = JSON.parse(readFileSync(number(2) ? kPaper : kFlake, "utf8"));
+// Returns an action that stores a new scene and renders it. One of four scenes stays stored until eviction,
+// the others are deleted.
+function scenesComeAndGo() {
+  const scene = JSON.parse(readFileSync(number(2) ? PAPER : FLAKE, "utf8"));
   return async (client) => {
     scene.title = `Scene ${Math.random()}`;
     const posted = await client.ask("/v1/scenes", {
@@ -21,7 +22,7 @@ function scenes_come_and_go() {
     });
     if (posted.status !== 201) return [posted];
     const address = `/v1/scenes/${JSON.parse(posted.text()).id}`;
-    const picture = await client.ask(new_picture(address, 64 + number(128), 1));
+    const picture = await client.ask(newPicture(address, 64 + number(128), 1));
     const explained = await client.ask(`${address}/explain`);
     const rest = number(4) === 0 ? [] : [await client.ask(address, { method: "DELETE" })];
     return [posted, picture, explained, ...rest];
@@ -32,7 +33,7 @@ function pictures(scenes) {
   return async (client) => {
     const address = number(2) ? scenes.paper : scenes.flake;
     const known = await client.ask(`${address}/frame.png?width=96&height=96&azimuth=${10 * number(36)}`);
-    const fresh = await client.ask(new_picture(address, 32 + number(300), 1 + number(4)));
+    const fresh = await client.ask(newPicture(address, 32 + number(300), 1 + number(4)));
     const head = await client.ask(`${address}/frame.png?width=96&height=96`, { method: "HEAD" });
     const body = JSON.stringify({
       scene_id: address.slice("/v1/scenes/".length),
@@ -59,7 +60,7 @@ function orbits(scenes, port) {
   };
 }
 
-const kBad = [
+const BAD = [
   ["/v1/scenes", { method: "POST", headers: json, body: '{"version": 1, "objects": [' }],
   ["/v1/scenes", { method: "POST", headers: json, body: '{"version": 1, "objects": [{"type": "ball"}], "rest": 1}' }],
   ["/v1/scenes/0000", {}],
@@ -70,9 +71,9 @@ const kBad = [
   ["/healthz", { headers: { "X-Long": "y".repeat(20_000) } }],
 ];
 
-function bad_requests(scenes, port) {
+function badRequests(scenes, port) {
   return async (client) => {
-    const [path, request] = kBad[number(kBad.length)];
+    const [path, request] = BAD[number(BAD.length)];
     const nonsense = net.connect(port, "127.0.0.1", () => nonsense.end("GET\0 / HTTP/9\r\nfoo\r\n\r\n"));
     await new Promise((resolve) => nonsense.on("error", resolve).on("close", resolve).resume());
     return [await client.ask(path, request), await client.ask(`${scenes.paper}/frame.png?widht=9`)];
@@ -91,7 +92,7 @@ function assets() {
 
 function leaving(scenes) {
   return async (client) => {
-    const answer = client.ask(new_picture(scenes.flake, 400, 16));
+    const answer = client.ask(newPicture(scenes.flake, 400, 16));
     await pause(number(200));
     client.leave();
     await answer;
@@ -99,9 +100,9 @@ function leaving(scenes) {
   };
 }
 
-// Returns the acts of all clients. An act takes the Client that it uses.
-export function acts_on(scenes, port) {
+// Returns the actions, one per client.
+export function actsOn(scenes, port) {
   const watching = Array.from({ length: 3 }, () => orbits(scenes, port));
   const drawing = [pictures(scenes), pictures(scenes), leaving(scenes)];
-  return [scenes_come_and_go(), scenes_come_and_go(), ...drawing, ...watching, assets(), bad_requests(scenes, port)];
+  return [scenesComeAndGo(), scenesComeAndGo(), ...drawing, ...watching, assets(), badRequests(scenes, port)];
 }

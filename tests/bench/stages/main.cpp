@@ -10,22 +10,21 @@
 #include "tests/bench/measuring.h"
 #include "tests/support/random.h"
 
-// Compares stages in front of an accelerator with the accelerator alone, on the rays of some tiles of a
-// picture.
+// Compares an accelerator behind a stage with the accelerator alone, on the rays of some tiles of an image.
 //   stages SCENE.json STRUCTURE predict none|network|last|random   shadow rays
-//   stages SCENE.json STRUCTURE known nearest                      camera rays that carry their hit already
+//   stages SCENE.json STRUCTURE known nearest                      camera rays with precomputed hits
 //   stages SCENE.json STRUCTURE reorder camera|bounced|scattered   closest hits
-// Prints facts of the rays in JSON. Then, for each input line "ours" (with the stage) or "theirs", traces all
-// rays and prints the CPU seconds.
+// Prints facts of the rays as JSON. For each input line "ours" (with the stage) or "theirs" (without), it
+// then traces all rays once and prints the CPU seconds.
 namespace orrery::bench {
 namespace {
 
 using nlohmann::ordered_json;
 
 constexpr int kTiles = 64;
-constexpr double kMinRunSeconds = 0.1;  // minimum length of a run
+constexpr double kMinRunSeconds = 0.1;  // minimum duration of a run
 
-// Rays of one recorded call, and hits known beforehand.
+// Rays of one recorded call, and already known hits.
 struct Call {
   RayBatch<float> rays;
   LaneGroups groups;
@@ -66,8 +65,8 @@ std::uint64_t rays_of(const Calls& calls) {
   return rays;
 }
 
-// Returns full batches of rays in random directions from the hits of the camera rays. `scattered`: in random
-// order.
+// Returns full batches of rays in random directions from the hits of the camera rays. If `scattered`, they
+// are in random order.
 Calls bounced(const Calls& camera, const Accelerator<float>& accelerator, bool scattered) {
   test::Random random(1);
   std::vector<Ray<float>> rays;
@@ -95,7 +94,7 @@ Calls bounced(const Calls& camera, const Accelerator<float>& accelerator, bool s
   return calls;
 }
 
-// Returns the CPU seconds of tracing copies of all calls. Adds to `counts` and `occluded`.
+// Traces copies of all calls and returns the CPU seconds. Adds to `counts` and `occluded`.
 double trace_calls(const Accelerator<float>& accelerator, const Calls& calls, bool shadows,
                    AcceleratorCounts& counts, std::uint64_t& occluded) {
   const auto rays = std::make_unique<RayBatch<float>>();
@@ -121,7 +120,7 @@ struct Task {
 };
 
 struct Sides {
-  Calls ours, theirs;  // rays of each side; empty `ours`: same as `theirs`
+  Calls ours, theirs;  // rays of each side; an empty `ours` means the rays of `theirs`
   std::shared_ptr<const Accelerator<float>> with, without;
   bool shadows = false;
   double build_ms = 0;
@@ -169,7 +168,7 @@ int run(const Task& task) {
   std::uint64_t occluded = 0, again = 0;
   trace_calls(*sides.with, ours, sides.shadows, with, occluded);
   const double once = trace_calls(*sides.without, sides.theirs, sides.shadows, without, again);
-  if (occluded != again) throw std::runtime_error("the stage changed an answer");
+  if (occluded != again) throw std::runtime_error("occluded rays must be the same with the stage");
   const int repeats = std::max(1, static_cast<int>(kMinRunSeconds / once));
   std::printf("%s\n", ordered_json({{"rays", rays_of(sides.theirs)},
                                     {"ray_s", once / static_cast<double>(rays_of(sides.theirs))},

@@ -12,18 +12,18 @@
 #include "tests/support/batches.h"
 #include "tests/support/random.h"
 
-// Measures build time and ray cost of every structure on one scene, on one thread. Rays are those of some
-// tiles of its picture, or random rays through its bounded primitives.
+// Measures build time and ray cost of every structure on one scene, on one thread. The rays are those of some
+// tiles of the image, or random rays through the bounded primitives.
 //   structures SCENE.json ROUNDS picture|random [NAME...]
-// Prints JSON. Times are CPU time. Each round measures every structure once, so that their ratios hold while
-// the machine's speed drifts.
+// Prints JSON. Times are CPU time. Each round measures every structure once, so that drift of the machine's
+// speed does not affect ratios.
 namespace orrery::bench {
 namespace {
 
 using nlohmann::ordered_json;
 
 constexpr int kTiles = 12;
-constexpr double kMaxBuildSeconds = 2;  // limit of CPU seconds for repeated builds
+constexpr double kMaxBuildSeconds = 2;  // limit of CPU seconds for repetitions of a build
 
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -63,7 +63,7 @@ struct Candidate {
   TraceCounts counts;  // from the last round
 };
 
-// Returns true for structures without a hierarchy on many primitives, which would take minutes.
+// Returns true for structures without a hierarchy on many primitives, because they would take minutes.
 bool too_slow(const AcceleratorType& type, int primitives) {
   const std::string_view name = type.name;
   return primitives > 20'000 && (name == "list" || name == "boxes" || name == "oriented-boxes");
