@@ -1,4 +1,4 @@
-#include "server/run.h"
+#include "server/commands/run.h"
 
 #ifdef ORRERY_JEMALLOC
 #include <jemalloc/jemalloc.h>

@@ -7,8 +7,8 @@
 #include "core/plan/cost.h"
 #include "core/plan/warnings.h"
 #include "core/render/views.h"
-#include "server/app/asset_reader.h"
-#include "server/app/watch.h"
+#include "server/cache/asset_reader.h"
+#include "server/scheduler/watch.h"
 
 namespace orrery {
 

@@ -1,6 +1,6 @@
 #include "server/app/streams.h"
 
-#include "server/app/admission.h"
+#include "server/scheduler/admission.h"
 
 namespace orrery {
 

@@ -6,7 +6,7 @@
 #include "core/plan/limits.h"
 #include "core/plan/plan.h"
 #include "core/study/audit.h"
-#include "server/app/error_report.h"
+#include "server/api/error_report.h"
 #include "server/commands/checks.h"
 #include "server/commands/commands.h"
 #include "server/commands/help_layout.h"

@@ -4,8 +4,7 @@
 #include "core/plan/limits.h"
 #include "core/plan/plan.h"
 #include "core/study/study.h"
-#include "server/app/chart_forms.h"
-#include "server/app/frame.h"
+#include "server/api/chart_forms.h"
 #include "server/commands/checks.h"
 #include "server/commands/commands.h"
 #include "server/commands/help_layout.h"
@@ -14,6 +13,7 @@
 #include "server/commands/render_flags.h"
 #include "server/commands/scene_file.h"
 #include "server/commands/signals.h"
+#include "server/rendering/frame.h"
 
 namespace orrery {
 namespace {

@@ -11,9 +11,9 @@
 #include "core/base/shorten.h"
 #include "core/params/json.h"
 #include "core/params/suggest.h"
-#include "server/app/flag_name.h"
 #include "server/commands/help_layout.h"
 #include "server/commands/scene_file.h"
+#include "server/config/flag_name.h"
 
 namespace orrery {
 namespace {

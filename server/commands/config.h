@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "server/app/settings.h"
+#include "server/config/settings.h"
 
 namespace CLI {
 class App;

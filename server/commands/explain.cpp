@@ -3,7 +3,7 @@
 
 #include "core/plan/plan.h"
 #include "core/render/budget.h"
-#include "server/app/explain.h"
+#include "server/api/explain.h"
 #include "server/commands/commands.h"
 #include "server/commands/render_flags.h"
 #include "server/commands/scene_file.h"

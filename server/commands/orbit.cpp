@@ -3,8 +3,6 @@
 
 #include "core/base/number.h"
 #include "core/plan/plan.h"
-#include "server/app/orbit_budget.h"
-#include "server/app/pipeline.h"
 #include "server/commands/checks.h"
 #include "server/commands/commands.h"
 #include "server/commands/frame_names.h"
@@ -15,6 +13,8 @@
 #include "server/commands/scene_file.h"
 #include "server/commands/signals.h"
 #include "server/commands/stats.h"
+#include "server/rendering/orbit_budget.h"
+#include "server/rendering/pipeline.h"
 
 namespace orrery {
 namespace {

@@ -3,7 +3,6 @@
 
 #include "core/plan/plan.h"
 #include "core/plan/warnings.h"
-#include "server/app/frame.h"
 #include "server/commands/commands.h"
 #include "server/commands/output_file.h"
 #include "server/commands/progress.h"
@@ -11,6 +10,7 @@
 #include "server/commands/scene_file.h"
 #include "server/commands/signals.h"
 #include "server/commands/stats.h"
+#include "server/rendering/frame.h"
 
 namespace orrery {
 namespace {

@@ -6,11 +6,11 @@
 
 #include "core/model/batch.h"
 #include "core/render/views.h"
-#include "server/app/flag_name.h"
-#include "server/app/render_options.h"
+#include "server/api/render_options.h"
 #include "server/commands/checks.h"
 #include "server/commands/help_layout.h"
 #include "server/commands/option_help.h"
+#include "server/config/flag_name.h"
 #include "server/http/target.h"
 
 namespace orrery {

@@ -18,7 +18,7 @@
 #include "server/http/forwarding.h"
 #include "server/http/listener.h"
 #include "server/http/process_limits.h"
-#include "server/service.h"
+#include "server/service/service.h"
 
 namespace orrery {
 namespace {

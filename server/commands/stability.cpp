@@ -6,7 +6,7 @@
 #include "core/stability/registry.h"
 #include "core/stability/report.h"
 #include "core/stability/speed.h"
-#include "server/app/stability_json.h"
+#include "server/api/stability_json.h"
 #include "server/commands/checks.h"
 #include "server/commands/commands.h"
 #include "server/commands/help_layout.h"

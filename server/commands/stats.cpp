@@ -10,9 +10,9 @@
 #include "core/math/instruction_level.h"
 #include "core/model/technique.h"
 #include "core/plan/plan.h"
-#include "server/app/error_report.h"
-#include "server/app/option_json.h"
-#include "server/app/render_options.h"
+#include "server/api/error_report.h"
+#include "server/api/option_json.h"
+#include "server/api/render_options.h"
 
 namespace orrery {
 namespace {

@@ -1,9 +1,9 @@
 #include <CLI/CLI.hpp>
 
 #include "core/base/error.h"
-#include "server/app/access.h"
+#include "server/base/request_id.h"
 #include "server/commands/commands.h"
-#include "server/http/request_id.h"
+#include "server/security/access.h"
 
 namespace orrery {
 namespace {

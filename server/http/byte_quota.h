@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/base/shorten.h"
-#include "server/http/limit_exceeded.h"
+#include "server/base/errors.h"
 
 namespace orrery {
 

@@ -14,7 +14,7 @@
 
 #include "core/base/shorten.h"
 #include "server/http/chunk_decoder.h"
-#include "server/http/handler_slots.h"
+#include "server/scheduler/handler_slots.h"
 
 namespace orrery {
 namespace {

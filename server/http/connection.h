@@ -13,7 +13,7 @@
 #include "core/base/clock.h"
 #include "server/http/head.h"
 #include "server/http/network.h"
-#include "server/http/wait_state.h"
+#include "server/scheduler/wait_state.h"
 
 namespace orrery {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "server/http/shared_bytes.h"
+#include "server/base/shared_bytes.h"
 
 // HTTP messages as routes see them, independent of any library.
 namespace orrery {

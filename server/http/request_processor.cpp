@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "server/http/limit_exceeded.h"
-#include "server/http/request_id.h"
+#include "server/base/errors.h"
+#include "server/base/request_id.h"
 #include "server/http/target.h"
 
 namespace orrery {

@@ -4,10 +4,10 @@
 
 #include "server/http/byte_quota.h"
 #include "server/http/connection.h"
-#include "server/http/handler_slots.h"
 #include "server/http/hangup_monitor.h"
 #include "server/http/response_writer.h"
 #include "server/http/server.h"
+#include "server/scheduler/handler_slots.h"
 
 namespace orrery {
 

@@ -5,8 +5,8 @@
 #include <mutex>
 #include <string>
 
+#include "server/base/shared_bytes.h"
 #include "server/http/byte_quota.h"
-#include "server/http/shared_bytes.h"
 
 namespace orrery {
 

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <iterator>
 
-#include "server/http/handler_slots.h"
+#include "server/scheduler/handler_slots.h"
 
 namespace orrery {
 namespace {

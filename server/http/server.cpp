@@ -13,10 +13,10 @@
 #include <thread>
 #include <tuple>
 
+#include "server/base/request_id.h"
 #include "server/http/connection.h"
 #include "server/http/listener.h"
 #include "server/http/overload_responder.h"
-#include "server/http/request_id.h"
 #include "server/http/request_processor.h"
 #include "server/http/response_writer.h"
 #include "server/http/threads.h"

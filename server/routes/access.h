@@ -1,7 +1,7 @@
 #pragma once
 
-#include "server/app/access.h"
 #include "server/http/message.h"
+#include "server/security/access.h"
 
 namespace orrery {
 

@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "server/app/error_report.h"
-#include "server/app/frame_path.h"
-#include "server/app/render_options.h"
+#include "server/api/error_report.h"
+#include "server/api/frame_path.h"
+#include "server/api/render_options.h"
 #include "server/http/field_list.h"
 
 namespace orrery {

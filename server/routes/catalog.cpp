@@ -1,4 +1,4 @@
-#include "server/app/catalog.h"
+#include "server/api/catalog.h"
 
 #include <nlohmann/json.hpp>
 

@@ -2,8 +2,8 @@
 
 #include "core/load/load.h"
 #include "core/params/params.h"
-#include "server/app/chart_forms.h"
-#include "server/app/picture_key.h"
+#include "server/api/chart_forms.h"
+#include "server/rendering/picture_key.h"
 #include "server/routes/job_answers.h"
 
 // /v1/scenes/{id}/charts: jobs that chart render time against error.

@@ -1,4 +1,4 @@
-#include "server/app/explain.h"
+#include "server/api/explain.h"
 
 #include <array>
 #include <nlohmann/json.hpp>

@@ -1,7 +1,7 @@
 #include <array>
 
 #include "server/app/app.h"
-#include "server/http/embedded.h"
+#include "server/base/embedded.h"
 #include "server/routes/constant.h"
 
 // Serves embedded files: GET / and the files of the page, GET /scenes/{name}.json and GET

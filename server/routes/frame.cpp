@@ -1,6 +1,6 @@
 #include "core/plan/plan.h"
 #include "server/app/app.h"
-#include "server/app/picture_key.h"
+#include "server/rendering/picture_key.h"
 #include "server/routes/answers.h"
 
 // GET /v1/scenes/{id}/frame.png: one image, a pure function of its URL unless the URL sets a time budget.

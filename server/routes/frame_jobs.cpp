@@ -2,8 +2,8 @@
 
 #include "core/base/number.h"
 #include "core/params/params.h"
-#include "server/app/orbit_budget.h"
-#include "server/app/picture_key.h"
+#include "server/rendering/orbit_budget.h"
+#include "server/rendering/picture_key.h"
 #include "server/routes/job_answers.h"
 #include "server/routes/render_order.h"
 

@@ -2,9 +2,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/number.h"
-#include "server/http/handler_slots.h"
 #include "server/routes/access.h"
 #include "server/routes/job_answers.h"
+#include "server/scheduler/handler_slots.h"
 
 // /v1/jobs/{id}: progress and removal of jobs of all kinds.
 namespace orrery {

@@ -4,7 +4,7 @@
 #include "core/pictures/picture.h"
 #include "core/plan/limits.h"
 #include "core/study/study.h"
-#include "server/app/option_json.h"
+#include "server/api/option_json.h"
 #include "server/http/head.h"
 #include "server/routes/answers.h"
 #include "server/routes/constant.h"

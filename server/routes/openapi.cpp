@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "server/app/option_json.h"
-#include "server/app/render_options.h"
-#include "server/app/settings.h"
-#include "server/http/embedded.h"
+#include "server/api/option_json.h"
+#include "server/api/render_options.h"
+#include "server/base/embedded.h"
+#include "server/config/settings.h"
 #include "server/routes/answers.h"
 #include "server/routes/constant.h"
 

@@ -5,12 +5,12 @@
 #include "core/base/number.h"
 #include "core/plan/plan.h"
 #include "core/plan/warnings.h"
+#include "server/api/error_report.h"
 #include "server/app/app.h"
-#include "server/app/error_report.h"
-#include "server/app/picture_key.h"
-#include "server/http/handler_slots.h"
+#include "server/rendering/picture_key.h"
 #include "server/routes/answers.h"
 #include "server/routes/picture_stream.h"
+#include "server/scheduler/handler_slots.h"
 
 // GET /v1/scenes/{id}/orbit: streams the frames of a camera orbit as they are rendered.
 namespace orrery {

@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/shorten.h"
-#include "server/app/admission.h"
-#include "server/app/error_report.h"
-#include "server/app/watch.h"
+#include "server/api/error_report.h"
+#include "server/scheduler/admission.h"
+#include "server/scheduler/watch.h"
 
 namespace orrery {
 namespace {
@@ -110,6 +110,8 @@ Response problem_response(std::exception_ptr error, std::string_view request_id)
     return missed(e, request_id);
   } catch (const NotFound& e) {
     return respond(404, e.what(), request_id);
+  } catch (const Forbidden& e) {
+    return respond(403, e.what(), request_id);
   } catch (const ClientLimitExceeded& e) {
     return try_later(429, e, request_id, e.limit());
   } catch (const LimitExceeded& e) {

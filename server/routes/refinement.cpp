@@ -2,8 +2,8 @@
 
 #include "core/plan/plan.h"
 #include "core/plan/warnings.h"
+#include "server/api/error_report.h"
 #include "server/app/app.h"
-#include "server/app/error_report.h"
 #include "server/routes/answers.h"
 #include "server/routes/picture_stream.h"
 

@@ -1,7 +1,7 @@
 #include <array>
 
 #include "core/plan/plan.h"
-#include "server/app/picture_key.h"
+#include "server/rendering/picture_key.h"
 #include "server/routes/answers.h"
 #include "server/routes/render_order.h"
 

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "server/app/access.h"
-#include "server/app/log.h"
 #include "server/http/message.h"
+#include "server/security/access.h"
+#include "server/telemetry/log.h"
 
 namespace orrery {
 

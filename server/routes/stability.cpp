@@ -1,7 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/stability/registry.h"
-#include "server/app/stability_json.h"
+#include "server/api/stability_json.h"
 #include "server/routes/answers.h"
 #include "server/routes/constant.h"
 

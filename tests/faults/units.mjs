@@ -5,7 +5,7 @@ const unitsByHeader = {
   "core/math/sampling.h": { test_stability: ["core/stability/"] },
   "core/model/bound.h": { test_render: ["core/render/certificate.cpp"] },
   "core/stability/row.h": { test_stability: ["core/stability/report.cpp", "tests/stability/"] },
-  "server/app/single_flight.h": { test_app: ["tests/app/"] },
+  "server/cache/single_flight.h": { test_server: ["tests/server/"] },
 };
 
 // Returns undefined if all units that include the file are to be compiled.

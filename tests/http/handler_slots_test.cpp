@@ -1,4 +1,4 @@
-#include "server/http/handler_slots.h"
+#include "server/scheduler/handler_slots.h"
 
 #include <gtest/gtest.h>
 #include <poll.h>

@@ -1,4 +1,4 @@
-#include "server/app/render_options.h"
+#include "server/api/render_options.h"
 #include "tests/http/daemon.h"
 
 // Tests the service's description of itself, and its embedded files.

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "core/base/hash.h"
-#include "server/http/embedded.h"
+#include "server/base/embedded.h"
 #include "server/http/target.h"
 #include "tests/http/daemon.h"
 

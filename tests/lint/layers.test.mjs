@@ -30,7 +30,18 @@ const kFloors = [
   ["core/render"],
   ["core/study"],
   ["core/stability"],
-  ["server"],
+  ["server/base"],
+  ["server/telemetry", "server/config"],
+  ["server/scheduler"],
+  ["server/http", "server/cache"],
+  ["server/security", "server/api"],
+  ["server/rendering"],
+  ["server/jobs"],
+  ["server/app"],
+  ["server/routes"],
+  ["server/service"],
+  ["server/commands"],
+  ["server"], // main.cpp
 ];
 const kRegisteredRooms = [...kFloors[3].filter((room) => room !== "core/stages"), "core/techniques", "core/stability"];
 const kGenerated = ["core/base/version.h"]; // in the build folder
@@ -50,7 +61,7 @@ const kLibraries = [
 // Folders that exist on one machine only. After a word or a dot, the match would be part of a relative path.
 const kMachinePath = /(?<![\w.)}\]-])(?:\/(?:work|home|root|Users|mnt)\/|[A-Z]:\\\\?Users)/;
 
-const roomOf = (path) => (path.startsWith("server/") ? "server" : path.split("/").slice(0, 2).join("/"));
+const roomOf = (path) => path.split("/").slice(0, -1).slice(0, 2).join("/");
 const floorOf = (path) => kFloors.findIndex((rooms) => rooms.includes(roomOf(path)));
 const isCode = (path) => /^(core|server)\/.*\.(cpp|h)$/.test(path);
 
@@ -86,7 +97,7 @@ function judge(root) {
   for (const path of files.filter(isCode)) includes.set(path, includesOf(contents.get(path).split("\n")));
 
   judgeText(contents, complain);
-  judgeIncludes(includes, complain);
+  judgeIncludes(includes, files, complain);
   judgeLibraries(includes, complain);
   judgeCycles(includes, complain);
   judgeRegistries(contents, complain);
@@ -108,10 +119,13 @@ function judgeText(contents, complain) {
   }
 }
 
-function judgeIncludes(includes, complain) {
+function judgeIncludes(includes, files, complain) {
   for (const [path, list] of includes) {
     const floor = floorOf(path);
     if (floor < 0) complain("room", path, 1, `${roomOf(path)} is not in the list of layers`);
+    if (/^server\//.test(roomOf(path)) && !files.includes(`${roomOf(path)}/README.md`)) {
+      complain("readme", path, 1, `${roomOf(path)} needs a README.md: what it owns, its threads, its includes`);
+    }
     for (const { line, target, quoted } of list) {
       if (!quoted) continue;
       if (!includes.has(target) && !kGenerated.includes(target)) {
@@ -181,12 +195,22 @@ const kGoodTree = {
   "core/shapes/shared.h": "#pragma once\n",
   "core/shapes/shared.cpp": '#include "core/shapes/shared.h"\n',
   "core/shapes/registry.cpp": "ShapeType sphere_type();  // one line each\n",
+  "server/http/README.md": "# HTTP\n",
   "server/http/http.cpp": '#include "core/model/shape.h"\n',
   "web/app.js": "// one\n".repeat(kMaxLines),
 };
 const kBadTrees = [
   ["floor", { "core/model/bad.h": '#include "server/http/x.h"\n', "server/http/x.h": "" }],
+  [
+    "floor",
+    { "server/http/bad.h": '#include "server/app/app.h"\n', "server/app/app.h": "", "server/app/README.md": "" },
+  ],
   ["floor", { "core/base/bad.h": '#include "core/model/shape.h"\n' }],
+  [
+    "neighbour",
+    { "server/http/bad.h": '#include "server/cache/c.h"\n', "server/cache/c.h": "", "server/cache/README.md": "" },
+  ],
+  ["readme", { "server/jobs/job.h": "" }],
   ["neighbour", { "core/math/bad.h": '#include "core/base/a.h"\n' }],
   ["neighbour", { "core/shapes/bad.h": '#include "core/lights/light.h"\n', "core/lights/light.h": "" }],
   ["cycle", { "core/base/p.h": '#include "core/base/q.h"\n', "core/base/q.h": '#include "core/base/p.h"\n' }],
@@ -198,7 +222,7 @@ const kBadTrees = [
   ["length", { "web/long.js": "// line\n".repeat(kMaxLines + 1) }],
   ["length", { "script/long": `#!/bin/sh\n${"true\n".repeat(kMaxLines)}` }],
   ["library", { "core/model/json.cpp": "#include <nlohmann/json.hpp>\n" }],
-  ["library", { "server/picture.cpp": "#include <png.h>\n" }],
+  ["library", { "server/http/picture.cpp": "#include <png.h>\n" }],
   ["library", { "core/render/picture.cpp": "#include <turbojpeg.h>\n" }],
   ["library", { "core/load/picture.cpp": "#include <OpenEXR/ImfRgbaFile.h>\n" }],
   ["library", { "server/http/client.cpp": "#include <httplib.h>\n" }],
