@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "core/base/shorten.h"
-#include "server/http/chunk_decoder.h"
+#include "server/http/framing_check.h"
 #include "server/scheduler/handler_slots.h"
 
 namespace orrery {
@@ -37,38 +37,12 @@ void take_from(msghdr& left, std::size_t bytes) {
 
 }  // namespace
 
-// Enforces the minimum transfer rate: returns the deadline for the next bytes of a message.
-class Connection::MinimumRate {
- public:
-  // `bytes`: size of the message in bytes, or 0 if unknown.
-  MinimumRate(std::size_t bytes, const Timeouts& patience)
-      : window_(patience.window),
-        end_(Clock::now() + patience.whole + patience.window),
-        bytes_a_window_(
-            static_cast<std::size_t>(window_.count()) *
-            std::max(patience.bytes_per_s, bytes / static_cast<std::size_t>(patience.whole.count()))) {}
-  Clock::time_point deadline() const { return std::min(deadline_, end_); }
-  void count(std::size_t bytes) {
-    crossed_ += bytes;
-    if (crossed_ < bytes_a_window_) return;
-    crossed_ = 0;
-    deadline_ = Clock::now() + window_;
-  }
-
- private:
-  const std::chrono::seconds window_;
-  const Clock::time_point end_;
-  const std::size_t bytes_a_window_;
-  std::size_t crossed_ = 0;  // bytes transferred in this window
-  Clock::time_point deadline_ = Clock::now() + window_;
-};
-
-Connection::Connection(int fd, const IpAddress& peer, int wake, const Timeouts& patience)
+Connection::Connection(int fd, const IpAddress& peer, int wake, const Timeouts& timeouts)
     : fd_(fd),
       wake_(wake),
       peer_(peer),
       network_(peer.network()),
-      patience_(patience),
+      timeouts_(timeouts),
       reading_since_(Clock::now()),
       waiting_(POLLIN),
       client_(network_) {}
@@ -145,7 +119,7 @@ bool Connection::wait_for_request() {
   bool fresh = std::exchange(fresh_, false);
   reading_since_ = Clock::now();
   writing_since_.reset();
-  auto deadline = reading_since_ + patience_.idle;
+  auto deadline = reading_since_ + timeouts_.idle;
   while (!skip_empty_lines()) {
     // A request that has already arrived is answered even during shutdown.
     const Ready ready = wait(POLLIN, deadline, true);
@@ -182,7 +156,7 @@ bool Connection::wait_to_receive(Clock::time_point deadline) {
   if (!shutdown_deadline_) {
     const Ready ready = wait(POLLIN, deadline, true);
     if (ready != Ready::wake) return ready == Ready::socket;
-    shutdown_deadline_ = Clock::now() + patience_.shutdown_grace;
+    shutdown_deadline_ = Clock::now() + timeouts_.shutdown_grace;
   }
   return wait(POLLIN, std::min(deadline, *shutdown_deadline_), false) == Ready::socket;
 }
@@ -196,16 +170,20 @@ HttpError Connection::too_late(const std::string& part) const {
 }
 
 void Connection::count_progress(Clock::time_point& since, std::size_t bytes) const {
-  const auto earned = std::chrono::microseconds(bytes * 1'000'000 / patience_.bytes_per_s);
+  const auto earned = std::chrono::microseconds(bytes * 1'000'000 / timeouts_.bytes_per_s);
   since = std::min(Clock::now(), since + earned);
 }
 
-Head Connection::read_head() {
+void Connection::read_head() {
   constexpr std::string_view kEnd = "\r\n\r\n";
-  const auto deadline = Clock::now() + patience_.head;
+  const auto deadline = Clock::now() + timeouts_.head;
   const auto receive_more = [&] {
     if (!receive(deadline)) throw too_late("request headers");
   };
+  ready_.clear();
+  read_ = 0;
+  chunks_.reset();
+  rate_.reset();
   while (!skip_empty_lines()) receive_more();
   std::size_t searched = 0, screened = 0;
   for (;;) {
@@ -216,64 +194,76 @@ Head Connection::read_head() {
     if (size > kMaxHeadBytes)
       throw HttpError(431, "request headers have more than " + grouped(kMaxHeadBytes) + " bytes (limit " +
                                grouped(kMaxHeadBytes) + ", head_bytes)");
-    if (end != std::string::npos) {
-      const std::string bytes = received_.substr(0, size);
-      received_.erase(0, size);
-      empty_lines_ = 0;
-      Head head = parse_head(bytes);
-      body_left_ = head.chunked ? std::numeric_limits<std::size_t>::max() : head.content_length.value_or(0);
-      return head;
-    }
+    if (end != std::string::npos) return take_head(size);
     searched = received_.size() - std::min(received_.size(), kEnd.size() - 1);
     receive_more();
   }
 }
 
-std::string Connection::read_body(const Head& head, const BodyLimit& limit, const Received& received) {
-  if (!head.chunked && !head.content_length) {
+void Connection::take_head(std::size_t size) {
+  const std::string bytes = received_.substr(0, size);
+  received_.erase(0, size);
+  empty_lines_ = 0;
+  CheckedHead head = check_head(bytes);
+  ready_ = std::move(head.bytes);
+  chunked_ = head.chunked;
+  content_length_ = head.content_length;
+  body_left_ = chunked_ ? std::numeric_limits<std::size_t>::max() : content_length_.value_or(0);
+}
+
+void Connection::begin_body(const BodyLimit& limit) {
+  if (!chunked_ && !content_length_) {
     body_left_ = std::numeric_limits<std::size_t>::max();  // all further input belongs to the body
     throw HttpError(411, "request body must have a Content-Length or chunked Transfer-Encoding");
   }
-  const std::size_t length = head.content_length.value_or(limit.bytes);  // upper bound
-  if (length > limit.bytes) throw body_too_long(limit, grouped(length));
-  if (const auto expect = head.header("Expect")) {
-    if (!equal_ignoring_case(*expect, "100-continue"))
-      throw HttpError(417, "Expect must be 100-continue (got " + expect->substr(0, 40) + ")");
-    const bool waits = received_.empty() && length > 0 && head.minor_version == 1;  // RFC 9110, 10.1.1
-    if (waits) write({"HTTP/1.1 100 Continue\r\n\r\n"});
-  }
+  if (content_length_.value_or(0) > limit.bytes) throw body_too_long(limit, grouped(*content_length_));
+  if (chunked_) chunks_.emplace(limit);
   reading_since_ = Clock::now();
-  std::string body = head.chunked ? read_chunks(limit, received) : read_counted(length, received);
-  body_left_ = 0;
-  return body;
+  rate_.emplace(content_length_.value_or(0), timeouts_);
 }
 
-std::string Connection::read_counted(std::size_t length, const Received& received) {
-  MinimumRate pace(length, patience_);
-  received_.reserve(std::min<std::size_t>(length, 1 << 20));
-  while (received_.size() < length) {
-    receive_part(pace);
-    received(std::min(received_.size(), length));
+ssize_t Connection::read(char* to, std::size_t size) {
+  try {
+    if (read_ == ready_.size()) receive_body();
+  } catch (const HttpError&) {
+    read_error_ = std::current_exception();
+    return -1;
   }
-  std::string rest = received_.substr(length);
-  received_.resize(length);
-  return std::exchange(received_, std::move(rest));  // received_ does not keep the body's capacity
+  const std::size_t count = std::min(size, ready_.size() - read_);
+  std::copy_n(ready_.data() + read_, count, to);
+  read_ += count;
+  return static_cast<ssize_t>(count);
 }
 
-std::string Connection::read_chunks(const BodyLimit& limit, const Received& received) {
-  MinimumRate pace(0, patience_);
-  ChunkDecoder decoder(limit);
-  while (!decoder.take(received_)) {
-    received(decoder.body().size() + received_.size());
-    receive_part(pace);
+void Connection::rethrow_read_error() const {
+  if (read_error_) std::rethrow_exception(read_error_);
+  throw HttpError(400, "malformed request body");
+}
+
+void Connection::receive_body() {
+  ready_.clear();
+  read_ = 0;
+  while (rate_ && body_left_ > 0 && ready_.empty()) {
+    if (chunks_) {
+      chunks_->pass_on(received_, ready_);
+      if (chunks_->has_ended()) body_left_ = 0;
+    } else if (received_.size() <= body_left_) {
+      ready_.swap(received_);
+      body_left_ -= ready_.size();
+    } else {
+      ready_ = received_.substr(0, body_left_);
+      received_.erase(0, body_left_);
+      body_left_ = 0;
+    }
+    if (body_left_ > 0 && ready_.empty()) receive_part();
   }
-  return std::move(decoder.body());
 }
 
-void Connection::receive_part(MinimumRate& pace) {
+void Connection::receive_part() {
+  flush();  // sends a 100 Continue, for which the client may wait
   const std::size_t before = received_.size();
-  if (!receive(pace.deadline())) throw too_late("request body");
-  pace.count(received_.size() - before);
+  if (!receive(rate_->deadline())) throw too_late("request body");
+  rate_->count(received_.size() - before);
   count_progress(reading_since_, received_.size() - before);
 }
 
@@ -282,7 +272,34 @@ void Connection::shut_down() const {
   shutdown(fd_, SHUT_RDWR);
 }
 
-bool Connection::write(std::initializer_list<std::string_view> pieces) {
+ssize_t Connection::write(const char* bytes, std::size_t size) {
+  constexpr std::size_t kSmall = 8 * 1024;
+  if (unsent_.size() + size <= kSmall) {
+    unsent_.append(bytes, size);
+    return broken_ ? -1 : static_cast<ssize_t>(size);
+  }
+  const bool sent = send_all({unsent_, {bytes, size}});
+  unsent_.clear();
+  return sent ? static_cast<ssize_t>(size) : -1;
+}
+
+bool Connection::flush() {
+  const bool sent = send_all({unsent_});
+  unsent_.clear();
+  return sent;
+}
+
+void Connection::get_remote_ip_and_port(std::string& ip, int& port) const {
+  ip = network_;
+  port = 0;
+}
+
+void Connection::get_local_ip_and_port(std::string& ip, int& port) const {
+  ip.clear();
+  port = 0;
+}
+
+bool Connection::send_all(std::initializer_list<std::string_view> pieces) {
   assert(pieces.size() <= kMaxPieces);
   std::array<iovec, kMaxPieces> vectors;
   msghdr left{};  // unsent bytes
@@ -292,18 +309,18 @@ bool Connection::write(std::initializer_list<std::string_view> pieces) {
     if (!piece.empty()) vectors[left.msg_iovlen++] = {const_cast<char*>(piece.data()), piece.size()};
     size += piece.size();
   }
-  MinimumRate pace(size, patience_);
+  MinimumRate rate(size, timeouts_);
   while (left.msg_iovlen > 0 && !broken_) {
     const ssize_t count = sendmsg(fd_, &left, MSG_NOSIGNAL);
     if (count >= 0) {
       take_from(left, static_cast<std::size_t>(count));
       written_ += static_cast<std::uint64_t>(count);
       if (writing_since_) count_progress(*writing_since_, static_cast<std::size_t>(count));
-      pace.count(static_cast<std::size_t>(count));
+      rate.count(static_cast<std::size_t>(count));
       continue;
     }
     if (errno == EAGAIN && !writing_since_) writing_since_ = Clock::now();
-    if (errno == EINTR || (errno == EAGAIN && wait(POLLOUT, pace.deadline(), false) == Ready::socket))
+    if (errno == EINTR || (errno == EAGAIN && wait(POLLOUT, rate.deadline(), false) == Ready::socket))
       continue;
     broken_ = true;
   }

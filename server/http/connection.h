@@ -1,8 +1,10 @@
 #pragma once
 
+#include <httplib.h>
+
 #include <atomic>
 #include <chrono>
-#include <functional>
+#include <exception>
 #include <initializer_list>
 #include <mutex>
 #include <optional>
@@ -11,51 +13,56 @@
 #include <string_view>
 
 #include "core/base/clock.h"
-#include "server/http/head.h"
+#include "server/http/chunk_check.h"
+#include "server/http/minimum_rate.h"
 #include "server/http/network.h"
 #include "server/scheduler/wait_state.h"
 
 namespace orrery {
 
-// Timeouts and minimum transfer rate of a connection. All but `idle` apply from the first byte of a request.
-struct Timeouts {
-  std::chrono::milliseconds idle{15'000};  // between two requests
-  std::chrono::milliseconds head{5'000};   // for request line and headers
-  // Minimum rate of bodies and responses in each `window`, at least size / `whole` if the size is known. A
-  // body or response must end within `whole` + `window`.
-  std::size_t bytes_per_s = 1024;
-  std::chrono::seconds whole{600};
-  std::chrono::seconds window{10};
-  std::chrono::milliseconds shutdown_grace{1'000};  // for the remaining bytes of a request at shutdown
-};
-
-// Reads requests from a client's socket and writes responses. Only the thread that serves the connection may
-// use it. shut_down(), client(), network(), waiting() and evict() are safe from any thread.
-class Connection final {
+// Socket of a client as a stream of cpp-httplib, with timeouts, minimum rates and eviction. Only the thread
+// that serves the connection may use it. shut_down(), client(), network(), waiting() and evict() are safe
+// from any thread.
+class Connection final : public httplib::Stream {
  public:
   // Takes ownership of the socket, which must be non-blocking. `wake` becomes readable when shutdown begins.
   // Idle connections then close, and an incomplete request must arrive within `shutdown_grace`.
-  Connection(int fd, const IpAddress& peer, int wake, const Timeouts& patience);
-  ~Connection();
+  Connection(int fd, const IpAddress& peer, int wake, const Timeouts& timeouts);
+  ~Connection() override;
   Connection(const Connection&) = delete;
 
   // Waits for the first byte of a request. Skips up to 8 empty lines before it (RFC 9112, 2.2). Returns false
   // at the idle timeout, at the end of input, after eviction or at shutdown.
   bool wait_for_request();
-  // Reads the request line and headers up to the empty line. Throws HttpError.
-  Head read_head();
-
-  // Reads the body of the request with this head. Calls `received` with the number of bytes received after
-  // each read, and passes on its exceptions. Throws HttpError.
-  using Received = std::function<void(std::size_t)>;
-  std::string read_body(const Head& head, const BodyLimit& limit, const Received& received);
+  // Receives the request line and headers and checks them. read() then returns them. Throws HttpError.
+  void read_head();
+  // Lets read() return the body. Throws HttpError 411 or 413 if its length is missing or over the limit.
+  // REQUIRES: read_head() has returned.
+  void begin_body(const BodyLimit& limit);
   // Whether bytes of this request may still arrive. If so, the connection cannot be reused.
   bool body_unread() const { return body_left_ > 0; }
+  // Whether bytes after the head have arrived.
+  bool has_received_more() const { return !received_.empty(); }
 
-  // Writes the pieces in order and blocks until the kernel has accepted all bytes. Returns false if the
-  // client has disconnected or reads too slowly, and after eviction. REQUIRES: at most kMaxPieces pieces.
-  static constexpr std::size_t kMaxPieces = 6;
-  bool write(std::initializer_list<std::string_view> pieces);
+  // Returns the next bytes of the head and, after begin_body(), of the body: 0 at the end, -1 after an error
+  // that rethrow_read_error() throws.
+  ssize_t read(char* to, std::size_t size) override;
+  // Throws HttpError, the cause of the last -1 of read().
+  [[noreturn]] void rethrow_read_error() const;
+
+  // Buffers small pieces. Blocks until the kernel has accepted larger ones, with all bytes before them.
+  // Returns `size`, or -1 if the client has disconnected or reads too slowly, and after eviction.
+  ssize_t write(const char* bytes, std::size_t size) override;
+  // Writes the buffered bytes. Returns false where write() returns -1.
+  bool flush();
+
+  // cpp-httplib asks these before it reads or writes; read() and write() wait by themselves.
+  bool is_readable() const override { return true; }
+  bool is_writable() const override { return !broken_; }
+  void get_remote_ip_and_port(std::string& ip, int& port) const override;
+  void get_local_ip_and_port(std::string& ip, int& port) const override;
+  // cpp-httplib rejects sockets of 1024 and more because it may call select(). This stream calls poll().
+  socket_t socket() const override { return 0; }
 
   // Shuts down sending and discards unread request bytes for up to 2 s before the connection closes. If the
   // client is still sending, an immediate close would reset the connection and the response would be lost.
@@ -87,7 +94,6 @@ class Connection final {
 
  private:
   using Clock = WaitState::Clock;
-  class MinimumRate;
   enum class Ready { socket, wake, none };
 
   // Waits until the socket is ready for `events` or broken. With `heed_wake`, also returns when shutdown
@@ -97,9 +103,14 @@ class Connection final {
   // deadline, after eviction, or `shutdown_grace` after shutdown began.
   bool receive(Clock::time_point deadline);
   bool wait_to_receive(Clock::time_point deadline);
-  std::string read_counted(std::size_t length, const Received& received);
-  std::string read_chunks(const BodyLimit& limit, const Received& received);
-  void receive_part(MinimumRate& pace);
+  // Receives body bytes into `ready_`, if the body has not ended. Throws HttpError.
+  void receive_body();
+  void take_head(std::size_t size);  // checks the first `size` bytes of `received_`
+  void receive_part();
+  // Writes the pieces in order and blocks until the kernel has accepted all bytes. Returns false as write()
+  // returns -1. REQUIRES: at most kMaxPieces pieces.
+  static constexpr std::size_t kMaxPieces = 2;
+  bool send_all(std::initializer_list<std::string_view> pieces);
   // Skips empty lines. Returns true if other input follows them.
   bool skip_empty_lines();
   // Returns the error for a `part` of a request that did not arrive in time.
@@ -110,9 +121,17 @@ class Connection final {
   const int fd_, wake_;
   const IpAddress peer_;
   const std::string network_;
-  const Timeouts patience_;
-  std::string received_;  // input that is not consumed yet
-  std::size_t body_left_ = 0;
+  const Timeouts timeouts_;
+  std::string received_;       // input that is not consumed yet
+  std::string ready_;          // checked bytes for read()
+  std::size_t read_ = 0;       // bytes of `ready_` that read() has returned
+  std::string unsent_;         // bytes of write() that wait for flush()
+  std::size_t body_left_ = 0;  // bytes of a body that may still arrive; maximum if unknown
+  bool chunked_ = false;       // the body is chunked
+  std::optional<std::size_t> content_length_;
+  std::optional<ChunkCheck> chunks_;  // set while a chunked body is read
+  std::optional<MinimumRate> rate_;   // set while a body is read
+  std::exception_ptr read_error_;
   int empty_lines_ = 0;  // skipped before the current request
   bool fresh_ = true;    // until the first wait_for_request()
   std::uint64_t written_ = 0;

@@ -5,7 +5,7 @@
 #include "core/base/error.h"
 #include "server/http/authority.h"
 #include "server/http/field_list.h"
-#include "server/http/head.h"
+#include "server/http/framing_check.h"
 #include "server/http/target.h"
 
 namespace orrery {

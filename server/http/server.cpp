@@ -17,8 +17,8 @@
 #include "server/http/connection.h"
 #include "server/http/listener.h"
 #include "server/http/overload_responder.h"
-#include "server/http/request_processor.h"
-#include "server/http/response_writer.h"
+#include "server/http/raw_response.h"
+#include "server/http/session.h"
 #include "server/http/threads.h"
 
 namespace orrery {
@@ -64,7 +64,7 @@ class HttpServer::Parts {
         handler_(std::move(handler)),
         listener_(std::in_place, options.host, options.port),
         port_(listener_->port()),
-        exchanger_(options, handler_, monitor_),
+        sessions_(options, handler_, monitor_),
         threads_(options.max_connections) {}
 
   int port() const { return port_; }
@@ -91,7 +91,7 @@ class HttpServer::Parts {
 
   void drain() {
     draining_ = true;
-    exchanger_.drain();
+    sessions_.draining = true;
     wake_.ring();
   }
 
@@ -191,7 +191,7 @@ class HttpServer::Parts {
                    : std::make_exception_ptr(
                          LimitExceeded(open(options_.max_connections, "", ""), 1, "connections"));
     const Response response = handler_.refuse(request, error);
-    return response_head(response, {.keep_alive = false}).append(response.body);
+    return raw_response(response);
   }
 
   // Waits until no request is being answered. Returns false at the deadline.
@@ -215,7 +215,7 @@ class HttpServer::Parts {
   using Open = std::list<Connection*>;
 
   // Reads and answers one request. Returns false if the connection must close.
-  bool answer(Connection& connection) {
+  bool answer(Session& session) {
     struct BusyGuard {
       Parts& parts;
       explicit BusyGuard(Parts& all) : parts(all) { ++parts.busy_; }
@@ -224,12 +224,13 @@ class HttpServer::Parts {
       }
     };
     const BusyGuard counted(*this);
-    return exchanger_.exchange(connection);
+    return session.exchange();
   }
 
   void serve(Connection& connection, Open::iterator entry) {
     try {
-      while (connection.wait_for_request() && answer(connection)) {
+      Session session(sessions_, connection);
+      while (connection.wait_for_request() && answer(session)) {
       }
       connection.linger();
     } catch (const std::exception&) {  // out of memory without a request to answer
@@ -252,7 +253,7 @@ class HttpServer::Parts {
   const int port_;
   const Alarm wake_, idle_;  // shutdown begins; no request is left during shutdown
   HangupMonitor monitor_;
-  RequestProcessor exchanger_;
+  SessionServices sessions_;
   OverloadResponder shed_;
   std::atomic<bool> draining_{false};
   std::atomic<int> busy_{0};  // requests being read or answered

@@ -5,7 +5,7 @@
 #include "core/plan/limits.h"
 #include "core/study/study.h"
 #include "server/api/option_json.h"
-#include "server/http/head.h"
+#include "server/http/framing_check.h"
 #include "server/routes/answers.h"
 #include "server/routes/constant.h"
 
@@ -22,6 +22,7 @@ nlohmann::ordered_json option_limits() {
 
 nlohmann::ordered_json limits_json(const Settings& settings, const nlohmann::ordered_json& options) {
   nlohmann::ordered_json json = {{"head_bytes", kMaxHeadBytes},
+                                 {"header_bytes", kMaxHeaderBytes},
                                  {"address_bytes", kMaxTargetBytes},
                                  {"json_depth", JsonLimits{}.depth},
                                  {"json_nodes", JsonLimits{}.nodes},

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "server/http/request_processor.h"
+#include "server/http/session.h"
 #include "server/routes/problem.h"
 #include "server/routes/router.h"
 
@@ -106,7 +106,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const Router router = make_router();
   static const HttpServer::Handler handler = make_handler(router);
   static HangupMonitor monitor;
-  static RequestProcessor exchanger({.max_bodies = 2000}, handler, monitor);
+  static SessionServices services({.max_bodies = 2000}, handler, monitor);
   static const int wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   constexpr std::size_t kMost = 20'000;
   int ends[2];
@@ -115,8 +115,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   require(send(ends[0], data, size, MSG_NOSIGNAL) == static_cast<ssize_t>(size));
   shutdown(ends[0], SHUT_WR);
   {
-    Connection connection(ends[1], IpAddress(), wake, Patience{});
-    while (connection.wait_for_request() && exchanger.exchange(connection))
+    Connection connection(ends[1], IpAddress(), wake, Timeouts{});
+    Session session(services, connection);
+    while (connection.wait_for_request() && session.exchange())
       ;
     connection.linger();
   }

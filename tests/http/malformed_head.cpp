@@ -18,8 +18,9 @@ std::string many_headers(int count) {
 
 // Returns a head of `size` bytes.
 std::string head_of(std::size_t size) {
-  const std::string rest = get("/healthz", "A: \r\n");
-  return get("/healthz", "A: " + std::string(size - rest.size(), 'a') + "\r\n");
+  const std::string half = "A: " + std::string(8'180, 'a') + "\r\n";
+  const std::string rest = get("/healthz", half + "B: \r\n");
+  return get("/healthz", half + "B: " + std::string(size - rest.size(), 'b') + "\r\n");
 }
 
 }  // namespace
@@ -114,7 +115,11 @@ std::vector<RawCase> head_cases() {
       {"HeadOf16384Bytes", head_of(16384), {200}},
       {"HeadOf16385Bytes", head_of(16385), {431}},
       {"HeaderWithoutEnd", "GET / HTTP/1.1\r\nA: " + std::string(100'000, 'a'), {431}},
-      {"HeaderNameLong", get("/healthz", std::string(10'000, 'a') + ": b\r\n"), {200}},
+      {"HeaderNameLong", get("/healthz", std::string(8'000, 'a') + ": b\r\n"), {200}},
+      {"HeaderOf8192Bytes", get("/healthz", "A: " + std::string(8187, 'a') + "\r\n"), {200}},
+      {"HeaderOf8193Bytes", get("/healthz", "A: " + std::string(8188, 'a') + "\r\n"), {431}},
+      {"HeaderOf8192BytesEscaped", get("/healthz", "A: " + std::string(2729, '%') + "\r\n"), {200}},
+      {"TargetWithSecondQuestionMark", get("/healthz?a=b?c", ""), {400}},
   };
 }
 

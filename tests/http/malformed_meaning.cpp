@@ -81,17 +81,17 @@ std::vector<RawCase> meaning_cases() {
       {"OptionsForPath", "OPTIONS /healthz HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n", {204}},
 
       // Very long lists and queries.
-      {"AcceptLong", get("Accept: " + std::string(12'000, ',') + "\r\n"), {200}},
+      {"AcceptLong", get("Accept: " + std::string(8'000, ',') + "\r\n"), {200}},
       {"AcceptWithManyParameters",
        "GET /v1/scenes/" + std::string(64, '0') +
-           "/orbit HTTP/1.1\r\nHost: x\r\nConnection: close\r\nAccept: a/b;" + std::string(12'000, ';') +
+           "/orbit HTTP/1.1\r\nHost: x\r\nConnection: close\r\nAccept: a/b;" + std::string(8'000, ';') +
            "q=nan\r\n\r\n",
        {404}},
       {"EntityTagsLong",
-       "GET / HTTP/1.1\r\nHost: x\r\nConnection: close\r\nIf-None-Match: " + std::string(12'000, 'W') +
+       "GET / HTTP/1.1\r\nHost: x\r\nConnection: close\r\nIf-None-Match: " + std::string(8'000, 'W') +
            "\r\n\r\n",
        {200}},
-      {"ConnectionLong", get("Connection: " + std::string(12'000, ',') + "\r\n"), {200}},
+      {"ConnectionLong", get("Connection: " + std::string(8'000, ',') + "\r\n"), {200}},
       {"QueryWithManyNames",
        "GET /healthz?" +
            [] {

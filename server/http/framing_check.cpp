@@ -1,4 +1,4 @@
-#include "server/http/head.h"
+#include "server/http/framing_check.h"
 
 #include <algorithm>
 #include <array>
@@ -15,12 +15,23 @@ namespace {
 constexpr std::array<std::string_view, 8> kMethods{"GET",    "HEAD",    "POST",  "PUT",
                                                    "DELETE", "OPTIONS", "TRACE", "PATCH"};
 
+// Headers that are not passed on: cpp-httplib serves ranges without If-Range, and adds the other four.
+constexpr std::array<std::string_view, 5> kWithheld{"Range", "REMOTE_ADDR", "REMOTE_PORT", "LOCAL_ADDR",
+                                                    "LOCAL_PORT"};
+
+// State between two lines of a head.
+struct Head {
+  int minor_version = 1;  // HTTP/1.0 or 1.1
+  int headers = 0, hosts = 0;
+  CheckedHead checked;
+};
+
 [[noreturn]] void throw_too_long() {
   throw HttpError(414, "URL has more than " + grouped(kMaxTargetBytes) + " bytes (limit " +
                            grouped(kMaxTargetBytes) + ", address_bytes)");
 }
 
-void parse_request_line(std::string_view line, Head& head) {
+void check_request_line(std::string_view line, Head& head) {
   const std::size_t first = line.find(' '), last = line.rfind(' ');
   if (first == std::string_view::npos || first == last)
     throw HttpError(400, "request line must be METHOD PATH HTTP/1.1");
@@ -32,6 +43,9 @@ void parse_request_line(std::string_view line, Head& head) {
       std::all_of(target.begin(), target.end(), [](char c) { return c > 0x20 && c != 0x7F; });
   if (target.empty() || !visible)
     throw HttpError(400, "URL must not be empty or contain unescaped blanks or control characters");
+  const std::string_view before_fragment = target.substr(0, target.find('#'));
+  if (std::count(before_fragment.begin(), before_fragment.end(), '?') > 1)
+    throw HttpError(400, "URL must have at most one unescaped ?");
   if (version != "HTTP/1.1" && version != "HTTP/1.0") {
     if (version.starts_with("HTTP/"))
       throw HttpError(505,
@@ -40,13 +54,56 @@ void parse_request_line(std::string_view line, Head& head) {
   }
   if (std::find(kMethods.begin(), kMethods.end(), method) == kMethods.end())
     throw HttpError(501, "unknown method " + std::string(method.substr(0, 40)));
-  head.method = method;
-  head.target = target;
   head.minor_version = version.back() - '0';
+  head.checked.bytes.append(line).append("\r\n");
 }
 
-void parse_header(std::string_view line, Head& head) {
-  if (head.headers.size() == kMaxHeaders)
+void check_transfer_coding(std::string_view coding, Head& head) {
+  if (head.minor_version == 0) throw HttpError(400, "Transfer-Encoding cannot be used with HTTP/1.0");
+  if (head.checked.chunked) throw HttpError(400, "duplicate Transfer-Encoding header");
+  if (!equal_ignoring_case(coding, "chunked"))
+    throw HttpError(501, "Transfer-Encoding must be chunked (got " + std::string(coding.substr(0, 40)) + ")");
+  head.checked.chunked = true;
+}
+
+void check_length(std::string_view value, Head& head) {
+  std::size_t length = 0;
+  const auto [end, problem] = std::from_chars(value.data(), value.data() + value.size(), length);
+  if (problem != std::errc() || end != value.data() + value.size())
+    throw HttpError(
+        400, "Content-Length must be a number of bytes (got " + std::string(value.substr(0, 40)) + ")");
+  if (head.checked.content_length) throw HttpError(400, "duplicate Content-Length header");
+  head.checked.content_length = length;
+}
+
+void check_host(std::string_view value, Head& head) {
+  ++head.hosts;
+  if (!value.empty() && !is_authority(value))
+    throw HttpError(
+        400, "Host must be a host with an optional port (got " + std::string(value.substr(0, 100)) + ")");
+}
+
+// Appends the header as cpp-httplib must read it.
+void pass_on(std::string_view name, std::string_view value, std::string& bytes) {
+  if (std::any_of(kWithheld.begin(), kWithheld.end(),
+                  [&](std::string_view withheld) { return equal_ignoring_case(withheld, name); }))
+    return;
+  const std::size_t begin = bytes.size();
+  bytes.append(name).append(": ");
+  for (const char c : value)
+    if (c == '%')
+      bytes += "%25";
+    else
+      bytes += c;
+  bytes += "\r\n";
+  if (bytes.size() - begin > kMaxHeaderBytes)
+    throw HttpError(431, "header " + std::string(name.substr(0, 40)) + " has more than " +
+                             grouped(kMaxHeaderBytes) + " bytes (limit " + grouped(kMaxHeaderBytes) +
+                             ", header_bytes; % counts as 3)");
+}
+
+void check_header(std::string_view line, Head& head) {
+  if (head.headers++ == kMaxHeaders)
     throw HttpError(431, "request has more than " + std::to_string(kMaxHeaders) + " headers (limit " +
                              std::to_string(kMaxHeaders) + ")");
   const std::size_t colon = line.find(':');
@@ -56,50 +113,10 @@ void parse_header(std::string_view line, Head& head) {
   if (!is_field_text(value))
     throw HttpError(400,
                     "header " + std::string(name.substr(0, 40)) + " must not contain control characters");
-  head.headers.emplace_back(name, value);
-}
-
-void check_transfer_coding(std::string_view coding, Head& head) {
-  if (head.minor_version == 0) throw HttpError(400, "Transfer-Encoding cannot be used with HTTP/1.0");
-  if (head.chunked) throw HttpError(400, "duplicate Transfer-Encoding header");
-  if (!equal_ignoring_case(coding, "chunked"))
-    throw HttpError(501, "Transfer-Encoding must be chunked (got " + std::string(coding.substr(0, 40)) + ")");
-  head.chunked = true;
-}
-
-// Checks the headers that determine the end of the request. A proxy that reads them differently would see
-// another request (request smuggling).
-void check_framing(Head& head) {
-  int hosts = 0;
-  for (const auto& [name, value] : head.headers) {
-    if (equal_ignoring_case(name, "Host")) {
-      ++hosts;
-      if (!value.empty() && !is_authority(value))
-        throw HttpError(400,
-                        "Host must be HOST or HOST:PORT (got " + std::string(value.substr(0, 100)) + ")");
-    }
-    if (equal_ignoring_case(name, "Transfer-Encoding")) check_transfer_coding(value, head);
-    if (!equal_ignoring_case(name, "Content-Length")) continue;
-    std::size_t length = 0;
-    const auto [end, problem] = std::from_chars(value.data(), value.data() + value.size(), length);
-    if (problem != std::errc() || end != value.data() + value.size())
-      throw HttpError(
-          400, "Content-Length must be a number of bytes (got " + std::string(value.substr(0, 40)) + ")");
-    if (head.content_length) throw HttpError(400, "duplicate Content-Length header");
-    head.content_length = length;
-  }
-  if (head.chunked && head.content_length)
-    throw HttpError(400, "Content-Length cannot be used with Transfer-Encoding");
-  if (hosts > 1 || (hosts == 0 && head.minor_version == 1))
-    throw HttpError(400, "request must have exactly one Host header (got " + std::to_string(hosts) + ")");
-}
-
-// Whether a Connection header lists `word`.
-bool connection_says(const Head& head, std::string_view word) {
-  bool says = false;
-  for_each_entry(joined(head.headers, "Connection"), ',',
-                 [&](std::string_view entry) { says = says || equal_ignoring_case(entry, word); });
-  return says;
+  if (equal_ignoring_case(name, "Host")) check_host(value, head);
+  if (equal_ignoring_case(name, "Transfer-Encoding")) check_transfer_coding(value, head);
+  if (equal_ignoring_case(name, "Content-Length")) check_length(value, head);
+  pass_on(name, value, head.checked.bytes);
 }
 
 }  // namespace
@@ -119,7 +136,7 @@ bool is_field_text(std::string_view text) {
   });
 }
 
-Head parse_head(std::string_view bytes) {
+CheckedHead check_head(std::string_view bytes) {
   Head head;
   bool first = true;
   while (!bytes.empty()) {
@@ -129,16 +146,18 @@ Head parse_head(std::string_view bytes) {
     bytes.remove_prefix(end + 2);
     if (line.empty()) break;
     if (first)
-      parse_request_line(line, head);
+      check_request_line(line, head);
     else
-      parse_header(line, head);
+      check_header(line, head);
     first = false;
   }
-  if (first) throw HttpError(400, "request must not be empty");
-  check_framing(head);
-  head.keep_alive =
-      head.minor_version == 1 ? !connection_says(head, "close") : connection_says(head, "keep-alive");
-  return head;
+  if (first) throw HttpError(400, "request line is missing");
+  if (head.checked.chunked && head.checked.content_length)
+    throw HttpError(400, "Content-Length cannot be used with Transfer-Encoding");
+  if (head.hosts > 1 || (head.hosts == 0 && head.minor_version == 1))
+    throw HttpError(400, "request must have one Host header (got " + std::to_string(head.hosts) + ")");
+  head.checked.bytes += "\r\n";
+  return std::move(head.checked);
 }
 
 void screen_head(std::string_view bytes, std::size_t from) {
@@ -152,7 +171,7 @@ void screen_head(std::string_view bytes, std::size_t from) {
   constexpr std::size_t kAroundTarget = 20;  // bytes; method, blanks and version take fewer
   const std::size_t end = bytes.find("\r\n");
   Head head;
-  if (end != std::string_view::npos && end + 2 > from) parse_request_line(bytes.substr(0, end), head);
+  if (end != std::string_view::npos && end + 2 > from) check_request_line(bytes.substr(0, end), head);
   if (end == std::string_view::npos && bytes.size() > kMaxTargetBytes + kAroundTarget) throw_too_long();
 }
 

@@ -1,10 +1,10 @@
-#include "server/http/chunk_decoder.h"
+#include "server/http/chunk_check.h"
 
 #include <charconv>
 #include <optional>
 
 #include "core/base/shorten.h"
-#include "server/http/head.h"
+#include "server/http/framing_check.h"
 
 namespace orrery {
 namespace {
@@ -39,29 +39,28 @@ HttpError body_too_long(const BodyLimit& limit, const std::string& bytes) {
           limit.name};
 }
 
-bool ChunkDecoder::take(std::string& bytes) {
-  std::size_t taken = 0;
+void ChunkCheck::pass_on(std::string& bytes, std::string& checked) {
+  std::size_t passed = 0;
   while (expects_ != Expects::nothing) {
-    const std::size_t count = step(std::string_view(bytes).substr(taken));
+    const std::size_t count = step(std::string_view(bytes).substr(passed), checked);
     if (count == 0) break;
-    taken += count;
+    passed += count;
   }
-  bytes.erase(0, taken);
-  return expects_ == Expects::nothing;
+  bytes.erase(0, passed);
 }
 
-std::size_t ChunkDecoder::step(std::string_view bytes) {
+std::size_t ChunkCheck::step(std::string_view bytes, std::string& checked) {
   switch (expects_) {
-    case Expects::size: return take_size(bytes);
-    case Expects::data: return take_data(bytes);
-    case Expects::end_of_data: return take_end_of_data(bytes);
-    case Expects::trailer: return take_trailer(bytes);
+    case Expects::size: return check_size(bytes, checked);
+    case Expects::data: return check_data(bytes, checked);
+    case Expects::end_of_data: return check_end_of_data(bytes, checked);
+    case Expects::trailer: return check_trailer(bytes, checked);
     case Expects::nothing: break;
   }
   return 0;
 }
 
-std::size_t ChunkDecoder::take_size(std::string_view bytes) {
+std::size_t ChunkCheck::check_size(std::string_view bytes, std::string& checked) {
   const auto line = line_of(bytes);
   if (!line) return 0;
   const auto [end, problem] = std::from_chars(line->data(), line->data() + line->size(), left_, 16);
@@ -69,31 +68,35 @@ std::size_t ChunkDecoder::take_size(std::string_view bytes) {
   if (problem != std::errc() || !(extension.empty() || extension.front() == ';'))
     refuse("chunk size must be hexadecimal digits");
   if ((overhead_ += extension.size()) > kMaxOverhead) refuse_overhead();
-  if (left_ > limit_.bytes - body_.size()) throw body_too_long(limit_, "more than " + grouped(limit_.bytes));
+  if (left_ > limit_.bytes - body_) throw body_too_long(limit_, "more than " + grouped(limit_.bytes));
+  body_ += left_;
   expects_ = left_ > 0 ? Expects::data : Expects::trailer;
+  if (left_ > 0) checked.append(line->data(), end).append("\r\n");
   return line->size() + 2;
 }
 
-std::size_t ChunkDecoder::take_data(std::string_view bytes) {
+std::size_t ChunkCheck::check_data(std::string_view bytes, std::string& checked) {
   const std::string_view data = bytes.substr(0, left_);
-  body_ += data;
+  checked += data;
   left_ -= data.size();
   if (left_ == 0) expects_ = Expects::end_of_data;
   return data.size();
 }
 
-std::size_t ChunkDecoder::take_end_of_data(std::string_view bytes) {
+std::size_t ChunkCheck::check_end_of_data(std::string_view bytes, std::string& checked) {
   if (!std::string_view("\r\n").starts_with(bytes.substr(0, 2))) refuse("CR LF must follow the chunk data");
   if (bytes.size() < 2) return 0;
   expects_ = Expects::size;
+  checked += "\r\n";
   return 2;
 }
 
-std::size_t ChunkDecoder::take_trailer(std::string_view bytes) {
+std::size_t ChunkCheck::check_trailer(std::string_view bytes, std::string& checked) {
   const auto line = line_of(bytes);
   if (!line) return 0;
   if (line->empty()) {
     expects_ = Expects::nothing;
+    checked += "0\r\n\r\n";
     return 2;
   }
   if (!is_token(line->substr(0, line->find(':'))) || line->find(':') == std::string_view::npos)
