@@ -12,7 +12,8 @@ export const accessToken = () => token;
 
 export const bearer = () => (token ? { Authorization: `Bearer ${token}` } : {});
 
-// Asks for another token after the service rejected `sent`. Resolves to false if the user closed the form.
+// Asks the user for a token after the service has rejected the token `sent`. Resolves to true if there is
+// another token to try, and to false if the user closed the form.
 export function askForToken(sent) {
   if (sent !== token) return Promise.resolve(true);
   asking ??= ask(document.getElementById("access"), sent !== "").finally(() => (asking = null));

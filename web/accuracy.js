@@ -10,10 +10,10 @@ const $ = (id) => document.getElementById(id);
 
 // `on` has
 //   picture() -> the picture at rest without plan and budget, or null
-//   withBudget({seconds, error}) -> the same with a budget
-//   shownAddress() -> address of the picture on the stage, or null
+//   withBudget({seconds, error}) -> the picture at rest with this budget and no plan
+//   shownAddress() -> URL of the picture on the stage, or null
 //   pause()
-//   set({plan, seconds, error}), at most one of them not empty or 0
+//   set({plan, seconds, error}); at most one is set, the others are "" or 0
 //   announce(text), for screen readers
 // Returns {hideOverlay()}, to be called when the view moves.
 export function attachAccuracy(store, on) {
@@ -69,7 +69,7 @@ function attachStatus(store) {
     status.classList.toggle("missed", missed);
   };
   store.subscribe(["figures"], ({ figures, ...settings }) => {
-    // A still of a held orbit is rendered without a budget.
+    // While an orbit is held, the still is rendered without a budget.
     if (figures?.kind === "still" && figures.bound && !settings.playing) show(budgetStatus(figures, settings));
   });
   store.subscribe(["shows"], ({ shows }) => shows === "" && show({ missed: false, text: "" }));

@@ -2,7 +2,7 @@
 
 import { formatHash } from "./link.js";
 
-const SAVE_MS = 1000; // update interval; browsers throttle shorter ones
+const SAVE_MS = 1000; // update interval; browsers throttle more frequent updates
 
 export class AddressBar {
   #store;
@@ -14,7 +14,7 @@ export class AddressBar {
     this.#camera = camera;
   }
 
-  // Updates the address, unless a scene is still being opened.
+  // Updates the URL hash, unless a scene is still being opened.
   save() {
     clearTimeout(this.#timer);
     this.#timer = 0;
@@ -25,7 +25,7 @@ export class AddressBar {
     this.#timer ||= setTimeout(() => this.save(), SAVE_MS);
   }
 
-  // Adds a history entry, with `view` instead of the camera's view.
+  // Adds a history entry with `view`, by default the camera's view.
   push(view) {
     history.pushState(null, "", this.#hash(view));
   }

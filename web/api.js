@@ -1,4 +1,4 @@
-// Requests to the service. Every failure but an abort throws ApiError.
+// Requests to the service. A failed request throws ApiError, an aborted request AbortError.
 
 import { accessToken, bearer, askForToken } from "./access.js";
 
@@ -33,7 +33,8 @@ export function isAbort(error) {
   return error?.name === "AbortError";
 }
 
-// Returns the error to throw when `error` interrupts a response.
+// Converts an error of fetch() or of reading a body. AbortError is kept, any other error becomes an ApiError
+// with status 0.
 export const toApiError = (error) => (isAbort(error) ? error : connectionError(error.message));
 
 async function problemOf(response) {
@@ -41,7 +42,7 @@ async function problemOf(response) {
   try {
     Object.assign(fields, JSON.parse(await response.text()));
   } catch (error) {
-    if (isAbort(error)) throw error; // not JSON: falls back to the status line
+    if (isAbort(error)) throw error; // else not JSON: keeps the text of the status line
   }
   const seconds = Number(response.headers.get("Retry-After"));
   return new ApiError({
@@ -52,7 +53,8 @@ async function problemOf(response) {
   });
 }
 
-// Resolves to a successful response of fetch(). Throws ApiError, or AbortError once `signal` fires.
+// Resolves to a successful response of fetch(). After status 401, asks the user for a token and repeats the
+// request. Throws ApiError, or AbortError once `signal` fires.
 export async function request(path, options = {}) {
   const token = accessToken();
   let response;
@@ -99,7 +101,7 @@ export function serverTiming(header) {
   return timing;
 }
 
-// Returns the service's warning about the picture of a response, or "".
+// Returns the service's warning about the picture in `response`, or "".
 export const warningOf = (response) => response.headers.get("Orrery-Warning") ?? "";
 
 // Fetches a picture as {png, stats}. A picture from the browser's cache has the figures of its first render.

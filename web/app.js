@@ -1,5 +1,5 @@
-// The page. The store has its state, the player chooses the picture, views show the state, and the address
-// bar writes it to the URL.
+// Entry point of the page. The store contains the state, the player chooses the picture, views show the
+// state, and the address bar writes the state to the URL.
 
 import { attachAccuracy } from "./accuracy.js";
 import { AddressBar } from "./address-bar.js";
@@ -32,11 +32,12 @@ const reducedMotion = matchMedia("(prefers-reduced-motion: reduce)");
 
 const store = new Store({
   ...parseHash(location.hash).settings,
-  catalog: null, // samples and techniques of the service, null until they are loaded
+  catalog: null, // sample scenes and techniques of the service, null until loaded
   limits: { side: 4096, pixels: 2 ** 24, samples: 4096, frames: 3600 },
-  scene: null, // scene on the stage, null while one is being opened
-  shows: "", // picture on the stage: "preview", "stream", "refining" or "still"; "" while another one is pending
-  figures: null, // {kind, ...} of the picture on the stage
+  scene: null, // scene on the stage, null while a scene is being opened
+  // Kind of picture on the stage: "preview", "stream", "refining" or "still"; "" while a picture is pending.
+  shows: "",
+  figures: null, // figures of the picture on the stage, {kind, ...}
   warning: "",
   failure: null, // {error, actions}
   retry: null, // {title, seconds} while the page waits to repeat a request
@@ -48,7 +49,7 @@ const camera = new OrbitCamera();
 const view = new View(stage, $("canvas"));
 const address = new AddressBar(store, camera);
 
-// State that a picture request needs.
+// Returns the state that a picture request needs: the store's values, with `changes`, and the stage's size.
 const page = (changes) => ({ ...store.get(), box: view.box, ...changes });
 
 const fail = (error, actions = []) => store.set({ retry: null, failure: { error, actions } });
@@ -84,7 +85,8 @@ const player = new Player(camera, view, {
 const accuracy = attachAccuracy(store, {
   picture: () => store.get().scene && pictureToChart(page(), camera.view),
   withBudget: (budget) => pictureAtRest(page({ plan: "", ...budget }), camera.view),
-  // The error view needs a plan instead of a budget. Until the service has chosen one, drops the budget.
+  // The error map accepts no budget. Uses the plan that the service has chosen for the budget, if known, else
+  // drops the budget.
   shownAddress: () => store.get().scene && frameUrl({ ...player.picture, seconds: 0, error: 0 }),
   pause: () => store.get().playing && setPlaying(false),
   set: change,
@@ -96,7 +98,7 @@ function currentPicture() {
   return scene && { picture: player.picture, name: library.sample(scene.ref)?.name ?? "scene" };
 }
 
-// Reports `error`. If the service rejected settings of the link, every offered action resets them.
+// Reports `error`. If the service rejected settings of the link, every offered action resets these settings.
 function showRenderError(error) {
   const rejected = rejectedSettings(error, store.get());
   if (!rejected) return fail(error);
@@ -122,7 +124,7 @@ const opener = new SceneOpener(store, library, camera, {
   },
 });
 
-// Actions offered if a scene cannot be shown, each [label, function].
+// Actions offered when a scene cannot be shown, each [label, function].
 const otherScenes = [
   ["Choose a sample scene", () => (selectTab("tab-scenes"), gallery.focus())],
   ["Paste a scene", () => (selectTab("tab-json"), $("text").focus())],
@@ -172,7 +174,7 @@ function setPlaying(playing) {
   address.save();
 }
 
-// Applies the hash after the user has navigated in the history or edited the address.
+// Applies the hash after the user has navigated in the history or edited the URL.
 function loadHash() {
   const { settings, view: linked } = parseHash(location.hash);
   const { catalog, scene, playing } = store.get();
@@ -189,7 +191,7 @@ function loadHash() {
   player.refresh();
 }
 
-// ---- moves of the view --------------------------------------------------------------------------------
+// ---- camera moves -------------------------------------------------------------------------------------
 
 const moves = {
   rotate: (azimuth, elevation) => (camera.rotate(azimuth, elevation), moved()),

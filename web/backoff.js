@@ -20,9 +20,9 @@ export class Backoff {
   }
 }
 
-// Runs `task` until it succeeds. Throws its error if the error is not retryable or the task is no longer
-// `wanted()`. Returns undefined if the task is no longer wanted after a wait. Calls `onWaiting(error,
-// seconds)` before each wait. wakeAll() ends every wait.
+// Runs `task` until it succeeds, and returns its result. Calls `onWaiting(error, seconds)` before each wait
+// between two attempts. wakeAll() ends every wait. Rethrows an error that is not retryable, or any error once
+// `wanted()` is false. Returns undefined if `wanted()` is false before an attempt.
 export async function withRetries(task, onWaiting, wanted = () => true) {
   for (const backoff = new Backoff(); wanted();) {
     try {

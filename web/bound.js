@@ -1,4 +1,4 @@
-// Text for the error bound of a picture, from the parameters of a header or from JSON.
+// Text for the error bound of a picture, from a response header or a certificate in JSON.
 
 import { roundedUp } from "./progress.js";
 
@@ -12,7 +12,7 @@ export function parametersOf(header) {
   return fields;
 }
 
-// Returns the same fields from a certificate in JSON.
+// Returns the fields of an Orrery-Error-Bound header from a certificate in JSON.
 export function fieldsOf({ total, known, terms, space }) {
   const number = (value) => (value === null ? "unknown" : String(value));
   const because = terms.filter(({ bound }) => bound.kind === "unknown").map(({ subject }) => subject);
@@ -29,11 +29,11 @@ export function fieldsOf({ total, known, terms, space }) {
 const strength = (kind) => (kind === "estimated" ? "95 % confidence" : kind);
 const upperBoundText = (rms, kind, space) => `≤ ${roundedUp(Number(rms))} (${strength(kind)})${unit(space)}`;
 
-// Suffix for the unit of an error: empty for linear radiance, else display values from 0 to 1.
+// Returns the suffix for the unit of an error: "" for linear radiance, else display values from 0 to 1.
 export const unit = (space) => (space === "display" ? " in display values" : "");
 
-// Returns a text such as "error ≤ 0.0044 (95 % confidence)". For an unknown error, names the cause and the
-// bound of the remaining terms.
+// Returns a text such as "error ≤ 0.0044 (95 % confidence)". If the total error is unknown, the text names
+// the unknown terms and the bound of the known terms.
 export function boundText(fields) {
   const { rms, kind, because, known, space } = fields;
   if (!kind) return "error unknown: not reported by the service";
@@ -43,7 +43,7 @@ export function boundText(fields) {
   return `${unknown}; other errors ${upperBoundText(known, fields["known-kind"], space)}`;
 }
 
-// Returns {missed, text} for the outcome of a budget.
+// Returns {missed, text} for a picture rendered to a budget. `budget` and `bound`: fields of their headers.
 export function budgetText(budget, bound) {
   const took = budget.used ? `${roundedUp(Number(budget.used))} s of ${budget.seconds} s` : "";
   const aim = budget.error ? `error limit: ${budget.error}` : "";

@@ -1,4 +1,5 @@
-// Predicted outcome of the page's budgets, which the service estimates from some pixels of the picture.
+// Predicts the outcome of the page's budgets. The service estimates each outcome from some pixels of the
+// picture.
 
 import { getJson } from "./api.js";
 import { unit } from "./bound.js";
@@ -6,14 +7,14 @@ import { duration } from "./pareto-front.js";
 import { roundedUp } from "./progress.js";
 import { frameUrl, queryOf } from "./urls.js";
 
-const TIMEOUT_MS = 3000; // for all budgets; a heavier scene has no prediction
+const TIMEOUT_MS = 3000; // for all budgets together; later predictions are dropped
 
 export class BudgetPrediction {
   #onChange;
   #last = { key: "", texts: [] };
   #work = null; // AbortController of the requests
 
-  // Calls `onChange(text)` with the prediction, or "" if there is none.
+  // Calls `onChange(text)` with the prediction, or "" when there is none.
   constructor(onChange) {
     this.#onChange = onChange;
   }
@@ -39,7 +40,8 @@ export class BudgetPrediction {
   }
 }
 
-// Requests the predictions one after another. Returns those that arrive in time.
+// Requests the predictions one after another until one fails or the timeout expires. Returns the texts of the
+// predictions received.
 async function predictAll(pictures, signal) {
   const texts = [];
   const all = AbortSignal.any([signal, AbortSignal.timeout(TIMEOUT_MS)]);

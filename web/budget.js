@@ -21,7 +21,7 @@ export function attachBudgets(chips, store, onChange) {
 
 export const budgetOf = ({ dataset }) => ({ seconds: Number(dataset.seconds ?? 0), error: Number(dataset.error ?? 0) });
 
-// Returns {missed, text} for a picture rendered with a plan or a budget. `figures`: figures of the picture.
+// Returns {missed, text} for a picture rendered with a plan or a budget. The text is empty without either.
 export function budgetStatus(figures, { plan, seconds, error }) {
   const { budget, bound } = figures;
   const fields = typeof bound === "object" && bound ? fieldsOf(bound) : parametersOf(bound);

@@ -7,7 +7,7 @@ const DAMPING = 0.05; // fraction of the way to the goal per 1/60 s
 const MIN_PIXELS = 1; // pixels added per 1/60 s, so that the glide ends
 const MIN_DISTANCE = 0.02;
 const MAX_DISTANCE = 50;
-const FLOOR_CLEARANCE = 0.01; // fraction of the scene's own distance
+const FLOOR_CLEARANCE = 0.01; // smallest height above the floor, as a fraction of the scene's own distance
 
 const defaultView = () => ({ azimuth: 0, elevation: 0, distance: 1, pan: [0, 0, 0], time: 0 });
 const clamp = (value, low, high) => Math.min(high, Math.max(low, value));
@@ -46,7 +46,7 @@ export class OrbitCamera {
   #own = frameOf();
   #floor = -Infinity;
 
-  // Sets the scene's own camera and its floor, a height along up below the scene's own eye. Both limit the
+  // Sets the scene's own camera and the height of the scene's floor along `up` (see floor.js). Both limit the
   // elevation of the view.
   useSceneCamera(camera, floor = -Infinity) {
     this.#scene = camera;
@@ -68,7 +68,7 @@ export class OrbitCamera {
     this.#keepAllowed();
   }
 
-  // Multiplies the distance by `factor`. Returns the applied factor, which differs at the distance limits.
+  // Multiplies the distance by `factor`. Returns the factor applied after clamping to the distance limits.
   dolly(factor) {
     const { distance } = this.#goal;
     this.#goal.distance *= factor;
@@ -76,8 +76,9 @@ export class OrbitCamera {
     return this.#goal.distance / distance;
   }
 
-  // Moves eye and target in the picture plane of the goal, in fractions of the picture's height at the
-  // target's distance. `fov` is the picture's vertical angle if it differs from the scene's own.
+  // Moves eye and target of the goal parallel to its picture plane. `right` and `up`: fractions of the
+  // picture's height at the target's distance. `fov`: vertical angle in degrees if it differs from the
+  // scene's own.
   pan(right, up, fov) {
     const { azimuth, elevation, distance } = this.#goal;
     const { pole, out, side } = this.#own;

@@ -26,7 +26,7 @@ export class ChartDialog {
     svg.setAttribute("role", "group");
     const title = svg.querySelector(":scope > title");
     svg.ariaLabel = title?.textContent ?? "Speed and accuracy";
-    title?.remove(); // it would hide the titles of the points
+    title?.remove(); // the browser would show it instead of the points' titles
     this.#box.replaceChildren(document.importNode(svg, true));
     for (const { index, line } of points) {
       const mark = this.#mark(index);

@@ -10,7 +10,7 @@ const DOLLY_STEP = 0.95; // distance factor of a wheel notch
 export const ZOOM_STEP = DOLLY_STEP ** 3; // distance factor of a key or a button
 export const TURN_STEP = 180 / 8; // degrees for an arrow key or a button
 export const PAN_STEP = 1 / 8; // fraction of the stage's height for an arrow key or a button
-const FINE_FACTOR = 1 / 22.5; // factor of a step with Shift, which turns by one degree
+const FINE_FACTOR = 1 / 22.5; // factor of a step with Shift: turns by one degree
 const DRAG_THRESHOLD = 3; // pixels; a shorter drag is a click
 const WHEEL_NOTCH = 100; // pixels of wheel movement that count as one step
 const PINCH_GAIN = 8; // a trackpad pinch arrives as small wheel movements with ctrlKey
@@ -69,7 +69,7 @@ function attachPointers(stage, on) {
     if (before) {
       const after = pinch();
       const factor = on.dolly(before.gap / after.gap);
-      on.pan(before.x / factor - after.x, after.y - before.y / factor); // keeps the scene under the midpoint
+      on.pan(before.x / factor - after.x, after.y - before.y / factor); // keeps the scene under the fingers
     } else if (pans) {
       on.pan(-dx, dy);
     } else {

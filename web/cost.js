@@ -3,7 +3,7 @@
 export class Cost {
   #ms = new Map(); // milliseconds per sample of a pixel, by scene and technique
 
-  // Records that `picture` took `ms`.
+  // Records `ms`, the measured time of `picture` in milliseconds. Ignores times that are not positive.
   note(picture, ms) {
     if (ms > 0) this.#ms.set(kindOf(picture), ms / amount(picture));
   }
@@ -12,8 +12,8 @@ export class Cost {
     return this.#ms.has(kindOf(picture));
   }
 
-  // Returns the expected render time, assuming equal cost per sample. Returns NaN before the first picture of
-  // the same scene and technique.
+  // Returns the expected time in milliseconds, assuming equal cost per sample. Returns NaN before the first
+  // recorded picture of the same scene and technique.
   expectedMs(picture) {
     return (this.#ms.get(kindOf(picture)) ?? NaN) * amount(picture);
   }
@@ -35,5 +35,5 @@ export function firstWithin(times, ms) {
 
 const kindOf = ({ id, technique }) => `${id} ${technique}`;
 
-// Returns the number of samples over all pixels, a measure of cost.
+// Returns the number of samples in all pixels of a picture, a measure of cost.
 export const amount = ({ width, height, samples }) => width * height * Math.max(1, samples);

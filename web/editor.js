@@ -1,25 +1,25 @@
-// Scene editor: edits and applies the text, lists errors and jumps to them. Posts the text after each edit to
-// check it. The service later evicts unused scenes.
+// Scene editor: edits and applies the text, lists errors and jumps to them. Posts the text CHECK_MS after the
+// last edit to check it. The service later evicts unused scenes.
 
 import { Gutter } from "./gutter.js";
 import { locate, offsetOf, placeOf } from "./pointer.js";
 import { hideProblem, placesOf, showProblem } from "./problem.js";
 
 const LETTER_WIDTH = 0.61; // letter width in em of monospaced fonts
-const CHECK_MS = 500; // delay after the last key
+const CHECK_MS = 500; // delay of the check after the last edit
 
 export class Editor {
   #parts;
   #text;
   #gutter;
-  #loaded = ""; // text as last loaded or applied
-  #draft = ""; // unapplied edit that another scene has replaced
+  #loaded = ""; // text that was last loaded or applied
+  #draft = ""; // unapplied text that was replaced when another scene was loaded
   #timer = 0;
   #attempt = 0; // counts edits, loads and attempts, to drop late responses
   #shownError = ""; // content of the error card
 
   // `parts`: {text, card, note, lines, apply, restore}. `onApply` and `onCheck` take the text and return a
-  // promise. The card shows the errors that they throw.
+  // promise. The card shows the error of a rejected promise.
   constructor(parts, onApply, onCheck) {
     this.#parts = parts;
     this.#text = parts.text;
@@ -72,7 +72,8 @@ export class Editor {
     this.#gutter.update();
   }
 
-  // Runs `action` on the text and reports its error. A retryable error is reported only with `reportsAll`.
+  // Runs `action` on the text and shows its error, or clears the card. Ignores retryable errors unless
+  // `reportsAll`.
   async #run(action, reportsAll) {
     clearTimeout(this.#timer);
     const attempt = ++this.#attempt;

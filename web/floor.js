@@ -5,7 +5,7 @@ const MIN_COSINE = 0.9999; // cosine of the largest angle between the plane's no
 const dot = (a, b) => a.reduce((sum, value, axis) => sum + value * b[axis], 0);
 const unit = (a) => a.map((value) => value / Math.hypot(...a));
 
-// Returns the height along up of the highest floor in a scene's JSON, or -Infinity without one.
+// Returns the height along up of the highest floor in a scene's JSON, or -Infinity without a floor.
 export function floorHeight({ objects = [], materials = {} }, { eye, up = [0, 1, 0] }) {
   const pole = unit(up);
   const heights = objects

@@ -5,7 +5,7 @@ import { thumbnailOf, titleOf } from "./scenes.js";
 
 const FIRST = "paper";
 const HEADINGS = {
-  // by prefix of the sample's name, in display order
+  // by the prefix of the sample's name, in display order
   "": "",
   material: "Materials",
   light: "Lights",
@@ -19,7 +19,8 @@ function kindOf(sample) {
   return start in HEADINGS ? start : "";
 }
 
-// Returns the index of the option that `key` moves the focus to from the option `at`, or null.
+// Returns the index of the option that `key` moves the focus to from the option `at`. Returns null if the key
+// does not move the focus.
 export function nextOption(key, at, titles) {
   const last = titles.length - 1;
   const moves = {

@@ -1,4 +1,5 @@
-// Line numbers of a textarea without wrapping, with marks on lines with errors. Only visible rows exist.
+// Line numbers next to a textarea that does not wrap lines. Lines with errors are marked. Only visible rows
+// are in the document.
 
 import { element } from "./problem.js";
 
@@ -15,7 +16,7 @@ export class Gutter {
     new ResizeObserver(() => this.#draw()).observe(text);
   }
 
-  // Redraws after a change of the text or of its faults.
+  // Redraws the line numbers after the text or its diagnostics have changed. `faults`: line -> error message.
   update(faults = this.#faults) {
     this.#faults = faults;
     this.#count = this.#text.value.split("\n").length;

@@ -5,7 +5,8 @@ export class HoldButton {
   #held;
   #on;
 
-  // `key`: lower case, handled outside text fields. Calls `on(held)` on press and release.
+  // `key`: value of KeyboardEvent.key in lower case. Ignored in form fields and while a dialog is open. Calls
+  // `on(held)` on press and release.
   constructor(button, key, on) {
     this.#button = button;
     this.#on = on;
@@ -15,7 +16,7 @@ export class HoldButton {
     });
     for (const event of ["pointerup", "pointercancel", "lostpointercapture", "blur"])
       button.addEventListener(event, () => this.#set(false));
-    // Clicks without a pointer, such as those of a screen reader, toggle the state.
+    // A click without a pointer, such as from a screen reader, toggles the state.
     button.addEventListener("click", ({ detail }) => detail === 0 && this.#set(!this.#held));
     button.addEventListener("contextmenu", (event) => event.preventDefault());
     const isHandled = ({ key: pressed, target }) =>
@@ -27,7 +28,7 @@ export class HoldButton {
     });
     document.addEventListener("keyup", (event) => {
       if (!isHandled(event)) return;
-      // Keeps some browsers from clicking the button.
+      // Otherwise some browsers click the button when the key is released.
       event.preventDefault();
       this.#set(false);
     });

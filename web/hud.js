@@ -1,9 +1,9 @@
-// Figures under the picture, updated at most four times a second to stay readable.
+// Figures under the picture. They change at most four times a second while the view moves, to stay readable.
 
 import { element } from "./problem.js";
 import { rounded } from "./progress.js";
 
-// [label, description]
+// name: [label, tooltip]
 const FIELDS = {
   fps: ["fps", "Displayed frames per second"],
   render: ["render", "Render time of the last image"],
@@ -44,8 +44,8 @@ export class Hud {
     store.subscribe(["retry"], ({ retry }) => retry && this.#clearRate());
   }
 
-  // Shows the figures of a frame. `kind` is "stream", "preview" or "still". Absent figures keep their last
-  // value.
+  // Shows the figures of a picture. `kind` is "stream", "preview" or "still". Absent figures keep their last
+  // value, except that "stream" and "preview" clear `rmse`, and "still" and "preview" set `skipped` to 0.
   #show({ kind, ...figures }) {
     const now = performance.now();
     this.#times = kind === "still" ? [] : [...this.#times.filter((time) => now - time < WINDOW_MS), now];

@@ -29,7 +29,8 @@ export async function makeChart(picture, extent, signal, onProgress) {
   return { chart, drawing };
 }
 
-// Waits for the end of a job. Returns its last state.
+// Waits until the job at the URL `address` is done. Returns its last state. Errors and cancellation as in
+// renderJob().
 async function followJob(address, signal, onProgress) {
   let over = false;
   try {
@@ -46,8 +47,8 @@ async function followJob(address, signal, onProgress) {
   }
 }
 
-// Returns the address of the posted job, or null if the service accepts none. Takes no abort signal: only the
-// response names the job to cancel.
+// Returns the URL of the posted job, or null if the service accepts no such jobs. Takes no abort signal: only
+// the response names the job to cancel.
 async function postJob(path, body) {
   try {
     return `v1/jobs/${(await postJson(path, JSON.stringify(body))).id}`;
@@ -57,7 +58,7 @@ async function postJob(path, body) {
   }
 }
 
-// Yields the data of server-sent events.
+// Yields the parsed JSON data of each server-sent event.
 async function* jobStates(path, signal) {
   const { body } = await request(path, { headers: { Accept: "text/event-stream" }, signal });
   const decoder = new TextDecoder();

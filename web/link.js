@@ -10,7 +10,7 @@ export const DEFAULTS = Object.freeze({
   technique: "",
   samples: 0,
   size: "fit",
-  plan: "", // query of frame.png without view and size, from a chart's point
+  plan: "", // query of frame.png without view and size, taken from a point of a chart
   seconds: 0, // time budget, 0 for no budget
   error: 0, // error budget, 0 for no budget
 });
@@ -25,8 +25,8 @@ const MAX_SPEED = 120; // degrees per second
 const MAX_PAN = 1e12; // metres, limit of the service
 const MAX_SECONDS = 60;
 
-// Parses a hash such as "#scene=paper&az=30" into {settings, view}. Missing and invalid values get their
-// default.
+// Parses a hash such as "#scene=paper&az=30" into {settings, view}. Missing and malformed values get their
+// default. Numbers are clamped to their range, except for `pan`: a number beyond its limit resets it.
 export function parseHash(hash) {
   const query = new URLSearchParams(hash.replace(/^#/, ""));
   const number = (key, low, high, fallback) => {
@@ -58,7 +58,8 @@ export function parseHash(hash) {
   };
 }
 
-// Returns the hash. Settings with their default are left out, except for speed and playing.
+// Returns the hash. Leaves out settings with their default (except for scene, speed and playing), and a pan
+// or time of 0.
 export function formatHash(settings, view) {
   const query = new URLSearchParams({
     scene: settings.ref,

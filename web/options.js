@@ -4,8 +4,8 @@ import { fixedSize, MODES, within } from "./size.js";
 
 const SAMPLES = [1, 4, 16, 64];
 
-// Fills `select` with `options`, each [value, label, title]. Adds `value` if it is missing, because a link
-// may contain any value.
+// Fills `select` with `options`, each [value, label, title]. Adds `value` as an option if it is missing,
+// because a link may contain any value.
 function fill(select, options, value) {
   const isChosen = ([key]) => String(key) === String(value);
   const all = options.some(isChosen) ? options : [...options, [value, value]];

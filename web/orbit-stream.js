@@ -5,8 +5,8 @@ import { figuresOf, FRAME_TYPE, readFrames } from "./stream.js";
 import { decode } from "./view.js";
 
 // Calls `show(bitmap, figures)` for the frames of `url` until the stream ends or `show` returns false.
-// figures.skipped includes frames dropped here. figures.warning is the warning of the response. Throws
-// ApiError, or AbortError once `signal` fires.
+// figures.skipped counts the frames dropped by the service and by the page. figures.warning is the warning of
+// the response. Throws ApiError, or AbortError once `signal` fires.
 export async function playStream(url, signal, show) {
   const response = await request(url, { headers: { Accept: FRAME_TYPE }, signal });
   const warning = warningOf(response);

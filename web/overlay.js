@@ -1,14 +1,15 @@
-// Temporary pictures over the stage, such as a chart's. Each is fetched once and fades into the next.
+// Temporary pictures over the stage, such as the pictures of a chart. A picture fades in over the previous
+// picture.
 
 import { getFrame } from "./api.js";
 import { decode } from "./view.js";
 
 export class Overlay {
   #box;
-  #canvases; // the visible one and the previous one
-  #pictures = new Map(); // address -> promise of a bitmap
+  #canvases; // the visible canvas, then the previous one
+  #pictures = new Map(); // URL -> promise of a bitmap
   #wanted = "";
-  #ahead = []; // addresses of the last prefetch
+  #ahead = []; // URLs of the last prefetch
 
   // `box` contains two <canvas> elements.
   constructor(box) {
@@ -20,7 +21,8 @@ export class Overlay {
     return !this.#box.hidden;
   }
 
-  // Fetches missing pictures one after another and drops all others. Stops silently at the first failure.
+  // Fetches the pictures at `addresses` one after another, unless they are cached. Drops all other pictures
+  // but the wanted one. Stops silently at the first failure.
   async prefetch(addresses, signal) {
     this.#ahead = addresses;
     this.#drop();
@@ -34,8 +36,8 @@ export class Overlay {
     }
   }
 
-  // Resolves once the picture is visible or another one is wanted. Throws ApiError if the picture is still
-  // wanted and cannot be fetched.
+  // Resolves once the picture is visible or another picture is wanted. Throws ApiError if the picture is
+  // still wanted and cannot be fetched.
   async show(address) {
     this.#wanted = address;
     const bitmap = await this.#picture(address).catch((error) => {
@@ -67,7 +69,7 @@ export class Overlay {
     this.hide();
   }
 
-  // Drops all bitmaps but the wanted and the prefetched ones: bitmaps of a whole screen are large.
+  // Drops all bitmaps except for the wanted and the prefetched ones. Full-screen bitmaps are large.
   #drop() {
     for (const [address, picture] of this.#pictures) {
       if (address === this.#wanted || this.#ahead.includes(address)) continue;

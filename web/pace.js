@@ -1,29 +1,29 @@
 // Frame rate and quality level of an orbit. Every frame is rendered, so slow frames slow the orbit down. The
-// stream is then requested again, at a coarser level if it stutters, else at a lower frame rate with wider
-// steps. A finer level is requested if it would not stutter.
+// stream is then requested again, at a coarser level if the orbit stutters, else at a lower frame rate with
+// wider steps. A finer level is requested if the predicted rate is high enough.
 
 import { firstWithin } from "./cost.js";
 
 const MAX_FPS = 30;
 const SMOOTH_FPS = 12; // an orbit stutters below this
-const FINER_FPS = 16; // predicted rate that a finer level needs
-const FINER_AFTER_MS = 200; // shortest measurement of the rate before a finer level
+const FINER_FPS = 16; // smallest predicted rate of a finer level
+const FINER_AFTER_MS = 200; // shortest time in which the rate is measured before a finer level
 const RETRY_MS = 5000; // delay before a level that was too slow is retried
 const TOLERANCE = 0.85; // smallest accepted fraction of the requested rate
-const WINDOW_MS = 1000; // shortest measurement of the rate with at least three intervals
-const LONG_GAP_MS = 1500; // shortest measurement with fewer intervals
+const WINDOW_MS = 1000; // shortest time in which the rate is measured, with at least three intervals
+const LONG_GAP_MS = 1500; // shortest time in which the rate is measured, with one or two intervals
 const MAX_STEP_DEGREES = 10; // degrees; an orbit with wider steps is a slide show
 
 export class Pace {
   fps = MAX_FPS;
-  level = 0; // 0: as requested; each level above is coarser
-  #kind = ""; // picture options for which the level was found
+  level = 0; // 0: quality as requested; a larger level is coarser
+  #kind = ""; // scene and picture options that the level applies to
   #slow = { level: -1, until: 0 }; // last level that was too slow
   #times = [];
-  #longestMs = 0; // longest work for a frame in #times
+  #longestMs = 0; // longest time that the service worked for a frame in #times
 
-  // Starts an orbit of `picture` at `level`. Keeps the level found before if scene, technique, samples and
-  // fixed size are the same.
+  // Starts an orbit at `level`. Keeps the current level if scene, technique, samples and fixed size have not
+  // changed.
   play({ id, width, height, fills, technique, samples }, level = 0) {
     const kind = [id, fills || `${width}x${height}`, technique, samples].join();
     if (kind === this.#kind) return;

@@ -1,4 +1,4 @@
-// Slider stops of a chart: render plans, each more accurate than every cheaper one.
+// Slider stops of a chart: render plans, each more accurate than every cheaper stop.
 
 import { rounded, roundedUp } from "./progress.js";
 
@@ -7,9 +7,10 @@ const EQUAL_RATIO = 0.99; // error ratio above which two points count as equal, 
 const VIEW_KEYS = ["azimuth_degrees", "elevation_degrees", "fov_degrees", "distance", "pan", "time"];
 const SHORT_VIEW_KEYS = ["azimuth", "elevation", "fov"];
 
-// Returns the stops as {point, place, line}: the chart's point, its position by log cost from 0 (fastest) to
-// 1, and its description. Skips a point whose mean error is not smaller than that of a cheaper stop, even if
-// the difference is not significant.
+// Returns the stops as {point, place, line}: the chart's point, its position on a logarithmic scale of CPU
+// time from 0 (fastest) to 1 (slowest), and its description. Skips a point of the front unless its error is
+// at least 1 % smaller than the error of every cheaper stop. An error below the noise floor counts as the
+// noise floor.
 export function stopsOf({ front, points, noise_floor: noiseFloor }) {
   const stops = [];
   let nearest = Infinity;
@@ -51,7 +52,7 @@ export function lineOf({ full_size: fullSize, interval, rmse, technique, max_dep
 export function planOf({ plan, samples }) {
   const query = new URLSearchParams(plan);
   for (const key of [...VIEW_KEYS, ...SHORT_VIEW_KEYS, "width", "height"]) query.delete(key);
-  query.set("samples", samples); // a plan without samples uses those of the scene
+  query.set("samples", samples); // a plan without samples uses the scene's samples
   return String(query);
 }
 
@@ -64,10 +65,10 @@ export function optionsOf(plan) {
   return { technique, samples, more: String(query) };
 }
 
-// Returns the address of a picture's error bound in false colours.
+// Returns the URL of a picture's error map, its error bound in false colours.
 export const boundOf = (address) => `${address}${address.includes("?") ? "&" : "?"}view=bound`;
 
-// Returns a picture's address with the view of `query` (URLSearchParams).
+// Returns the URL of a picture in the view of `query` (URLSearchParams).
 export function atView(address, query) {
   const [path, text] = address.split("?");
   const all = new URLSearchParams(text);

@@ -1,5 +1,5 @@
-// Picture requests of the page: options from the user and the link, at the size of the stage. `page` has the
-// values of the store, with a scene, and `box`, the size of the stage. `view` is the camera's view.
+// Picture requests of the page: options from the user and the link, at the size of the stage. `page` contains
+// the values of the store, with a scene, and `box`, the size of the stage. `view` is the camera's view.
 
 import { amount } from "./cost.js";
 import { optionsOf } from "./pareto-front.js";
@@ -43,8 +43,8 @@ export function movingPictures(page, purpose, view) {
   return pictures.filter((picture, at) => at === 0 || amount(picture) < amount(pictures[at - 1]));
 }
 
-// Returns the picture at rest. With a budget, `samples` is the number that the user has chosen, or 0, and
-// `own` is the scene's number.
+// Returns the picture at rest. With a budget, its `samples` are the sample count that the user has chosen, or
+// 0, and its `own` is the scene's sample count.
 export function pictureAtRest(page, view) {
   const picture = pictureFor(page, "still", view);
   const { scene, limits, samples, seconds, error } = page;

@@ -33,13 +33,13 @@ export class Player {
   #isPlaying = false;
   #isVisible = true;
   #isHeld = false; // true during a drag: no stream until it ends
-  #isMoving = false; // true while the view moves by hand, and REST_MS longer
+  #isMoving = false; // true while the view moves by hand, and for REST_MS after the last input
   #lastInput = 0;
   #lastTick = 0;
   #work = null; // {kind, key, abort} of the current stream or still
-  #shown = ""; // address of the still on the canvas
+  #shown = ""; // URL of the still or preview on the canvas, "" for a stream or draft
   #shownSamples = 0; // samples of the picture on the canvas
-  #shownLocation; // address that reproduces a picture rendered to a budget
+  #shownLocation; // URL that reproduces a picture rendered to a budget
   #shownFigures; // figures of the picture on the canvas
   #shownId = ""; // id of the scene on the canvas
   #cost = new Cost(); // render times
@@ -110,7 +110,8 @@ export class Player {
     this.#epoch += 1;
   }
 
-  // Picture to share: the one on the canvas if the view is at rest, else the last one of its refinement.
+  // Picture to share: the picture on the canvas if it shows the view at rest, else the final picture of the
+  // refinement.
   get picture() {
     const { picture, isRequested } = this.#on.pictureAtRest(this.#camera.goal);
     const shown = this.#shownPicture(picture);
@@ -214,7 +215,7 @@ export class Player {
     const { png, stats } = await getFrame(frameUrl(picture), signal);
     const bitmap = await decodeUnlessAborted(signal, png);
     const plan = new URLSearchParams(stats.location?.split("?")[1]);
-    const samples = Number(plan.get("samples") ?? picture.own); // a plan without samples uses those of the scene
+    const samples = Number(plan.get("samples") ?? picture.own); // a plan without samples uses the scene's
     this.#draw(frameUrl(picture), bitmap, picture, "still", { ...stats, samples });
     this.#shownLocation = stats.location;
   }
@@ -230,7 +231,7 @@ export class Player {
     this.#run("stream", key, (signal) => this.#stream(signal));
   }
 
-  // Plays streams one after another. Each ends after `streamFrames` frames or when the pace changes.
+  // Plays streams one after another. A stream ends after `streamFrames` frames or when the pace changes.
   async #stream(signal) {
     const pace = this.#pace;
     for (;;) {

@@ -55,7 +55,7 @@ function findChild(text, at, name) {
 }
 
 // Returns [start, end] in `text` of the value at `pointer`. For a missing member, returns the opening bracket
-// of its nearest ancestor. With `key`, returns the place of that key in the value, if it is present.
+// of its nearest existing ancestor. With `key`, returns the place of that key in the value, if it is present.
 export function locate(text, pointer, key = null) {
   const names = pointer
     .split("/")

@@ -7,7 +7,7 @@ function duration(seconds) {
 // Rounds to two significant digits.
 export const rounded = (rmse) => String(Number(rmse.toPrecision(2)));
 
-// Rounds an upper bound up to two significant digits, within the rounding of a double.
+// Rounds an upper bound up to two significant digits. Ignores rounding errors of a double.
 export function roundedUp(bound) {
   if (bound === 0) return "0";
   const unit = 10 ** (Math.floor(Math.log10(bound)) - 1);
@@ -15,8 +15,8 @@ export function roundedUp(bound) {
 }
 
 // Returns the progress in words. `shown` of `end` samples are on the canvas. `rmse`: root mean square error
-// of a pixel in linear radiance, if known. `part`: finished part of the next picture. `secondsLeft`: time to
-// the end.
+// of a pixel in linear radiance, if known. `part`: finished fraction of the next picture. `secondsLeft`: time
+// until all samples are rendered.
 export function progressText({ shown, end, rmse, part, secondsLeft }) {
   const words = end ? [`${shown} of ${end} samples`] : [];
   if (rmse > 0) words.push(`error ${rounded(rmse)}`);

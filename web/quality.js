@@ -1,15 +1,15 @@
 // Quality levels of pictures, from fine to coarse: first with fewer samples, then with fewer pixels.
 
 const SIDE_FACTORS = [0.84, 0.71, 0.59, 0.5, 0.42, 0.35, 0.3, 0.25]; // two steps halve the pixels
-const MIN_PART = { fit: 0.25, half: 0.5 }; // a quarter of the stage's width in both
+const MIN_PART = { fit: 0.25, half: 0.5 }; // both: a quarter of the stage's width
 const DEFAULT_SAMPLES = 64;
 
-// Returns the samples of the picture at rest, at most `most`: the number `chosen` by the user, or if it is 0,
-// the larger of 64 and the scene's `own` number.
+// Returns the samples of the picture at rest: `chosen` by the user, or if this is 0, the larger of 64 and the
+// scene's `own` samples. The result is at most `most`.
 export const samplesAtRest = (chosen, own, most) => Math.min(most, chosen || Math.max(own, DEFAULT_SAMPLES));
 
-// Returns the sample counts after each pass of a picture in the service. Each is half of the next, rounded
-// down.
+// Returns the sample counts after each pass of a refinement by the service. Each count is half of the next,
+// rounded down.
 export function passes(samples) {
   const counts = [];
   for (let count = samples; count > 0; count = Math.floor(count / 2)) counts.unshift(count);

@@ -17,21 +17,22 @@ export class Refiner {
   #jobs = true; // false: the service accepts no jobs
   #cost;
 
-  // `cost`: the Cost of rendering, read and updated.
+  // `cost`: the Cost of render times, which the refiner reads and updates.
   constructor(cost) {
     this.#cost = cost;
   }
 
-  // Returns the picture that refineToEnd() ends with.
+  // Returns the last picture that refineToEnd() is expected to render.
   last(picture, isRequested) {
     const counts = passes(picture.samples);
     const end = counts.findIndex((samples, at) => at > 0 && !isRequested && this.#tooSlow({ ...picture, samples }));
     return { ...picture, samples: counts.at(end < 0 ? -1 : end - 1) };
   }
 
-  // Renders `picture` from few samples to all. `shown`: samples on the canvas, 0 if it shows another view.
+  // Renders `picture` from few samples to all.
+  // `shown`: samples on the canvas, 0 if the canvas shows another view.
   // `isRequested`: render all samples, however long they take. Calls draw(picture, bitmap, stats) for each
-  // picture and progress({shown, end, rmse, part, secondsLeft}). Without `part`, `secondsLeft` is an
+  // picture, and progress({shown, end, rmse, part, secondsLeft}). Without `part`, `secondsLeft` is the page's
   // estimate.
   async refineToEnd(picture, { shown, isRequested }, signal, on) {
     const end = picture.samples;

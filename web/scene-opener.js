@@ -1,4 +1,4 @@
-// Opens scenes in the page. A scene that is opened later replaces one that is still loading.
+// Opens scenes in the page. Opening another scene discards a scene that is still loading.
 
 import { withRetries } from "./backoff.js";
 import { factsOf } from "./scenes.js";
@@ -35,8 +35,8 @@ export class SceneOpener {
     }
   }
 
-  // Posts a text of the user. Resolves to the scene, or to null if another one was opened meanwhile. Throws
-  // ApiError.
+  // Posts a scene text from the user. Resolves to the scene, or to null if another scene was opened
+  // meanwhile. Throws ApiError.
   async post(text) {
     const turn = this.#turn;
     const posted = await this.#library.post(text);

@@ -1,5 +1,5 @@
 // Scenes known to the page: samples by name, pasted scenes by id. The service may evict a scene. The page
-// posts it again if it has the text.
+// posts an evicted scene again if the page has its text.
 
 import { getJson, getText, postScene } from "./api.js";
 import { floorHeight } from "./floor.js";
@@ -15,7 +15,7 @@ export function titleOf(sample) {
   return sample.name.charAt(0).toUpperCase() + sample.name.slice(1);
 }
 
-// Returns the address of a sample's thumbnail.
+// Returns the URL of a sample's thumbnail.
 export const thumbnailOf = ({ name }) => `scenes/thumbnails/${name}.webp`;
 
 // Library of scenes {ref, id, title, text, width, height, camera}, with {motion} if anything moves. `ref` is
@@ -45,7 +45,7 @@ export class SceneLibrary {
     return { ...info, ref, title: titleOf(sample), text };
   }
 
-  // Posts a text of the user. Throws ApiError with the places of its errors.
+  // Posts a scene text from the user. Throws ApiError with the places of the errors in the text.
   async post(text) {
     const info = await postScene(text);
     const name = this.#ids.get(info.id);

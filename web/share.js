@@ -7,8 +7,8 @@ import { curlCommand, fileName, frameUrl } from "./urls.js";
 const FEEDBACK_MS = 2000;
 
 // Attaches the download link. `current()` returns {picture, name} of the stage, or null. A link cannot send
-// an access token, so with a token a click fetches the picture and saves it. Calls `failed(error)` if this
-// fails. Returns a function that refreshes the link.
+// an access token, so with a token a click fetches the picture and saves it. Calls `failed(error)` if the
+// fetch fails. Returns a function that refreshes the link.
 export function attachDownload(link, current, failed) {
   const refresh = () => {
     const now = current();

@@ -1,6 +1,6 @@
 // Picture sizes in pixels.
 
-const STREAM_PIXELS = 1e6; // larger streams are bound by PNG encoding and decoding
+const STREAM_PIXELS = 1e6; // PNG encoding and decoding limit the frame rate of larger streams
 
 export const MODES = ["fit", "half", "scene", "1280x720", "1920x1080", "3840x2160"];
 
@@ -19,8 +19,8 @@ export function within(size, side, pixels) {
 }
 
 // Returns {width, height, fov, fills} for `purpose` "still", "stream" or "preview". `part` is a factor of
-// each side. `fov` is set if the box is narrower than the scene's own picture: its vertical angle grows so
-// that the sides stay in view.
+// each side. `fov`, a vertical angle in degrees, is set if the picture fills a box that is narrower than the
+// scene's own picture. The angle is wider than the scene's, so that the sides stay in view.
 export function pictureSize({ mode, purpose, box, pixelRatio, scene, limits, part = 1 }) {
   const own = { width: scene.width, height: scene.height };
   const fills = mode === "fit" || mode === "half";
@@ -43,7 +43,8 @@ const aspect = (size) => size.width / size.height;
 // Orthographic views and panoramas have no angle to widen.
 const hasAngle = (camera) => !["orthographic", "panorama"].includes(camera?.type);
 
-// Returns the box, or a part of it with the scene's aspect ratio if the view has no angle.
+// Returns the box. If the camera has no angle and the box is narrower than the scene's own picture, reduces
+// the height to the scene's aspect ratio.
 function fit(own, box, camera) {
   if (hasAngle(camera) || aspect(box) >= aspect(own)) return box;
   return { width: box.width, height: box.width / aspect(own) };

@@ -11,7 +11,7 @@ export class Store {
     this.#values = Object.freeze({ ...values });
   }
 
-  // Returns all values. The object does not change later.
+  // Returns all values as an immutable snapshot.
   get() {
     return this.#values;
   }

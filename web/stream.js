@@ -84,7 +84,8 @@ export const figuresOf = ({ render_ms: renderMs, encode_ms: encodeMs, azimuth_de
   azimuth,
 });
 
-// Yields the frames of a response body as they arrive. Throws ApiError if the body breaks off.
+// Yields the frames of a response body as they arrive. Throws ApiError if the body is truncated, Error if it
+// is malformed.
 export async function* readFrames(body) {
   const parser = new FrameParser();
   for await (const chunk of chunks(body)) yield* parser.push(chunk);
@@ -101,7 +102,7 @@ export async function* chunks(body) {
       yield value;
     }
   } finally {
-    reader.cancel().catch(() => {}); // the connection is closed already, or closes now
+    reader.cancel().catch(() => {}); // rejects if the connection is already closed
   }
 }
 

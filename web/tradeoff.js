@@ -9,7 +9,7 @@ import { BudgetPrediction } from "./budget-prediction.js";
 import { progressText } from "./progress.js";
 import { frameUrl, queryOf } from "./urls.js";
 
-const CHART_EXTENT = { samples: 16, rounds: 3, width: 200 }; // a chart takes some seconds, or a minute with paths
+const CHART_EXTENT = { samples: 16, rounds: 3, width: 200 }; // takes seconds, or a minute for path tracing
 const OFFER = "The chart renders this view with different settings and shows the time and error of each.";
 const SLIDER_STEPS = 1000; // steps of the range input, finer than the stops
 
@@ -22,7 +22,7 @@ export class Tradeoff {
   #chart = null;
   #stops = [];
   #at = -1; // index of the chosen stop, or -1
-  #replaced = null; // address of the picture that is hidden while a button is held
+  #replaced = null; // URL of the picture that a held button replaces, or null
   #work = null; // AbortController of the chart being made
   #prediction;
   #predicted = ""; // prediction shown while there is no chart
@@ -30,8 +30,8 @@ export class Tradeoff {
 
   // `parts`: elements by name, and the `budgets` to predict. `on` has
   //   picture() -> the picture at rest without plan and budget, or null
-  //   withBudget(budget) -> the same with that budget only
-  //   shownAddress() -> address of the picture on the stage, or null
+  //   withBudget(budget) -> the picture at rest with this budget and no plan
+  //   shownAddress() -> URL of the picture on the stage, or null
   //   pause(), use(plan), chart(drawing, points), announce(text)
   constructor(parts, overlay, on) {
     this.#parts = parts;
@@ -60,7 +60,7 @@ export class Tradeoff {
     this.#drop();
   }
 
-  // Predicts the outcome of the budgets for the picture at rest, unless there is a chart.
+  // Predicts the outcome of each budget for the picture at rest, unless a chart exists or is being made.
   predictBudgets() {
     if (!this.#chart && !this.#work) this.#prediction.predict(this.#parts.budgets.map(this.#on.withBudget));
   }
@@ -73,7 +73,7 @@ export class Tradeoff {
     this.#overlay.hide();
   }
 
-  // Chooses the stop of the chart's point `index`, if it is a stop.
+  // Selects the stop of the point `index` of the chart. Does nothing if the point is not a stop.
   choose(index) {
     const at = this.#stops.findIndex(({ point }) => point === this.#chart.points[index]);
     if (at >= 0) this.#select(at);
@@ -122,7 +122,7 @@ export class Tradeoff {
     this.#on.chart(drawing, selectable);
     this.#showParts();
     this.#select(this.#stops.length - 1);
-    // Keeps the focus if the user has moved it elsewhere.
+    // Focuses the slider unless the user has moved the focus elsewhere.
     if ([this.#parts.make, document.body].includes(document.activeElement)) this.#parts.slider.focus();
   }
 
@@ -150,7 +150,7 @@ export class Tradeoff {
     this.#select(at, place);
   }
 
-  // Moves the thumb to its stop.
+  // Moves the thumb to the selected stop.
   #snapThumb() {
     if (this.#at >= 0) this.#parts.slider.value = Math.round(this.#stops[this.#at].place * SLIDER_STEPS);
   }
@@ -181,7 +181,7 @@ export class Tradeoff {
     text.textContent = text.title = line;
     this.#on.pause();
     const elsewhere = this.#isOtherView ? "Measured for another view. " : "";
-    this.#showNote(`${elsewhere}Bound without the reference: ${boundText(fieldsOf(this.#point.certificate))}`);
+    this.#showNote(`${elsewhere}Bound without a reference image: ${boundText(fieldsOf(this.#point.certificate))}`);
     this.#showPicture(this.#address());
     this.#fetchAll();
   }
@@ -190,7 +190,7 @@ export class Tradeoff {
     return this.#view !== viewOf(this.#on.picture());
   }
 
-  // Returns the address of a point's picture in the current view.
+  // Returns the URL of a chart's picture, changed to the current view.
   #atCurrentView(address) {
     return this.#isOtherView ? atView(address, queryOf(this.#on.picture())) : address;
   }
@@ -203,7 +203,7 @@ export class Tradeoff {
     return this.#chart && this.#atCurrentView(this.#chart.reference.picture);
   }
 
-  // Returns the error view of the visible stop, else of the picture on the stage.
+  // Returns the URL of the error map of the visible stop, else of the picture on the stage.
   #bound() {
     const address = (this.#overlay.shown && this.#address()) || this.#on.shownAddress();
     return address && boundOf(address);
@@ -226,7 +226,7 @@ export class Tradeoff {
     }
   }
 
-  // Shows the picture at `address` while held, then the previous one.
+  // Shows the picture at `address` while the button is held, then the previous picture.
   #hold(held, address) {
     if (!held) {
       if (this.#replaced) this.#showPicture(this.#replaced);
@@ -253,7 +253,7 @@ export class Tradeoff {
   }
 }
 
-// Returns the view of a picture as an address, for comparison.
+// Returns the scene and view of a picture as a URL, for comparison.
 function viewOf(picture) {
   const { width, height, technique, samples, more, ...view } = picture;
   return frameUrl(view);

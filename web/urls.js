@@ -1,9 +1,9 @@
-// Addresses of pictures, relative so that the page works below any path. Numbers are rounded, so equal views
-// have equal addresses and hit the browser's cache.
+// URLs of pictures, relative so that the page works below any path. Numbers are rounded, so that equal views
+// have equal URLs and hit the browser's cache.
 
 // Returns the query of a picture {id, azimuth, elevation, distance, pan, width, height}, with {isAnimated,
 // time} in a moving scene. Optional: {fov, technique, samples}, `more` options as a query, budgets {seconds,
-// error}. `location`: address that reproduces a picture rendered to a budget.
+// error}. `location`: URL that reproduces a picture rendered to a budget.
 export function queryOf(picture) {
   const query = new URLSearchParams({
     azimuth: round(picture.azimuth, 2),
@@ -29,19 +29,20 @@ export function panText(pan) {
 }
 
 export function round(value, digits) {
-  return Number(value.toFixed(digits)) + 0; // + 0: no minus zero
+  return Number(value.toFixed(digits)) + 0; // + 0 turns -0 into 0
 }
 
 export function frameUrl(picture) {
   return picture.location ?? `v1/scenes/${picture.id}/frame.png?${queryOf(picture)}`;
 }
 
-// Returns the address of the picture's refinement in passes.
+// Returns the URL of the stream that refines the picture in passes.
 export function refinementUrl(picture) {
   return `v1/scenes/${picture.id}/refinement?${queryOf(picture)}`;
 }
 
-// Returns the address of an orbit. `timeStep`: seconds of the scene's motion per frame, 0 if nothing moves.
+// Returns the URL of an orbit stream. `timeStep`: seconds of the scene's motion per frame, 0 if nothing
+// moves.
 export function orbitUrl(picture, { frames, fps, step, timeStep }) {
   const query = queryOf(picture);
   query.set("frames", frames);

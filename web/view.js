@@ -45,7 +45,7 @@ export class View {
     this.#blend(bitmap, 0, performance.now(), fades ? FADE_MS : 0);
   }
 
-  // Shows only the thumbnail at this address until a picture is drawn. Shows nothing for "".
+  // Hides the canvas until a picture is drawn. Shows the thumbnail with this URL instead, or nothing for "".
   announce(thumbnail) {
     this.#canvas.hidden = true;
     this.#newest = null;

@@ -9,9 +9,10 @@ namespace orrery {
 template <class T>
 class BatchTraversal {
  public:
-  // `t` contains the t_max of each active ray and receives its hit distance, or -1 if the ray is occluded.
-  // `primitive` receives the primitive that each ray hits; null for occlusion queries. REQUIRES: all
-  // arguments outlive this object.
+  // `t` and `primitive` contain the nearest known hit of each ray: initially t_max and kNoPrimitive. Rays
+  // with t <= 0 are inactive. For closest-hit queries, run() replaces both by the nearest hit. For occlusion
+  // queries, `primitive` is null and run() sets t of occluded rays to -1. REQUIRES: all arguments outlive
+  // this object.
   BatchTraversal(const WideTree<T>& tree, const RayBatch<T>& rays, const LaneGroups& groups, Array<T>& t,
                  Array<IndexOf<T>>* primitive)
       : tree_(tree), rays_(rays), groups_(groups), t_(t), primitive_(primitive) {}
@@ -29,15 +30,15 @@ class BatchTraversal {
 
  private:
   using N = Lanes<T>;
-  // Maximum width of a packet at the box of the tree, relative to the mean leaf extent. Wider packets test
-  // many boxes that most of their rays miss.
+  // Maximum width of a packet at the box of the tree, relative to the mean leaf extent. Wider packets would
+  // test many boxes that most of their rays miss.
   static constexpr T kMaxPacketExtent = 1;
-  // Maximum number of block and primitive tests per packet. Beyond it, the rays of the packet continue one by
-  // one.
+  // Maximum number of block and primitive tests per packet. When a packet exceeds this budget, its rays
+  // continue one by one.
   static constexpr int kPacketBudget = 200;
-  // If the first kTrialPackets packets need more than kDearTests tests on average, at least kTrialSingles
-  // rays are traced one by one. The remaining rays of the batch use the method with the lower cost per ray.
-  // Costs are in ns, measured on one machine; only their ratios matter.
+  // If the first kTrialPackets packets need more than kDearTests tests on average, the next kTrialSingles or
+  // more rays are traced one by one. The remaining rays of the batch use the method with the lower cost per
+  // ray. The costs below are in ns, measured on one machine. Only their ratios matter.
   static constexpr int kTrialPackets = 8, kTrialSingles = 2 * kWidth<T>, kDearTests = 48;
   static constexpr double kPacketCost = 100, kPacketVisitCost = 12, kPacketTestCost = 14;
   static constexpr double kSingleCost = 30, kSingleVisitCost = 9, kSingleTestCost = 3.5;
@@ -67,7 +68,8 @@ class BatchTraversal {
     trial_ = Trial::over;
   }
 
-  // Traces all packets. Returns the number of block and primitive tests.
+  // Traces all packets. Adds the active rays of packets that exceeded their budget to singles_. Returns the
+  // number of block and primitive tests.
   template <Query kQuery>
   double run_packets(AcceleratorCounts& counts) {
     run_all<kQuery>(packets_, counts);
@@ -122,8 +124,8 @@ class BatchTraversal {
     packets_.add(packet, probe, {t, primitive, stdx::hmax(t), kPacketBudget}, group);
   }
 
-  // Adds the lanes of a register whose bits are set in `chosen`. Bits of `x` and `y` mark rays whose largest
-  // direction component is x or y.
+  // Adds the lanes of a register whose bits are set in `chosen` to singles_. Bits of `x` and `y` mark rays
+  // whose largest direction component is x or y.
   void add_singles(const Ray<N>& ray, const Shear<N>& shear, unsigned x, unsigned y, unsigned chosen,
                    int group) {
     const typename RayBoxTester<T>::Register probes(ray);
@@ -156,14 +158,14 @@ class BatchTraversal {
             {largest(active, shear.x), largest(active, shear.y)}};
   }
 
-  // Runs all traversals, grouped by the signs of their directions, because such rays visit nodes in nearly
+  // Runs all traversals, grouped by octant of the direction, because rays of one octant visit nodes in nearly
   // the same order.
   template <Query kQuery, class Traversals>
   void run_all(Traversals& traversals, AcceleratorCounts& counts) const {
     if (traversals.count == 0) return;
     using Streaming = Stream<kQuery, T, Traversals>;
     const auto octant = [&](int i) -> std::size_t { return traversals.probes[i].octant(); };
-    std::array<int, 9> begin{};  // start of each octant, then the end of the last
+    std::array<int, 9> begin{};  // start of each octant in `ids`, then the end of the last octant
     for (int i = 0; i < traversals.count; ++i) ++begin[octant(i) + 1];
     for (std::size_t o = 0; o < 8; ++o) begin[o + 1] += begin[o];
     std::array<std::int32_t, Traversals::kCapacity + Streaming::kPad> ids;
@@ -183,7 +185,7 @@ class BatchTraversal {
   TraversalGroup<SingleRay<T>, RayBoxTester<T>, SingleHit<T>, kBatch> singles_;
   Trial trial_ = Trial::packets;
   bool packets_pay_ = true;
-  double packet_cost_ = 0;  // ns per ray
+  double packet_cost_ = 0;  // estimated ns per ray, from the trial of packets
 };
 
 }  // namespace orrery

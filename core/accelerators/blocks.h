@@ -9,9 +9,10 @@
 
 namespace orrery {
 
-// Name of a block of packed primitives: index of its pack (5 bits) and index in the pack (26 bits). A pack
-// contains the primitives of one kernel. The structure may use the highest bit. A scene has one kernel per
-// shape type and one for instances, so 5 bits suffice for 31 shape types.
+// Name of a block of packed primitives. Bits 0 to 25 are the index of the block in its pack, bits 26 to 30
+// the index of the pack. A pack contains the primitives of one kernel. The highest bit is free for the
+// structure. A scene has one kernel per shape type and one for instances, so 5 bits suffice for 31 shape
+// types.
 using BlockName = std::uint32_t;
 
 // Primitives of a structure in traversal order, packed into blocks of kBlock<T>.
@@ -22,8 +23,8 @@ class Blocks {
   static std::size_t pack_number(BlockName name) { return name >> kBlockBits & (kMaxPacks - 1); }
   static std::uint32_t block_of(BlockName name) { return name & kBlockMask; }
 
-  // Adds a block of 1 to kSize primitives of one kernel. `places` are their indices in `primitives`. Returns
-  // the name of the block. Throws InputError if the kernel has more than 2^26 blocks.
+  // Adds a block of 1 to kSize primitives of one kernel. `places` contains their indices in `primitives`.
+  // Returns the name of the block. Throws InputError if the kernel has more than 2^26 blocks.
   BlockName add(const PrimitiveList<T>& primitives, std::span<const std::uint32_t> places) {
     const auto* kernel = primitives[places.front()].kernel;
     references_ += places.size();
@@ -59,8 +60,9 @@ class Blocks {
     partial_packs_ = {};
   }
 
-  // Repacks the primitives from `moved`, which has the order of the original list. Returns the new boxes,
-  // indexed by pack and block. The list of a pack is empty if its primitives have not moved.
+  // Repacks the primitives from `moved`, which has the order of the original list. Returns the new boxes of
+  // all blocks, indexed by pack and block. The list of boxes of a pack is empty if the primitives of the pack
+  // have not moved.
   std::vector<std::vector<Bounds<T>>> follow(const PrimitiveList<T>& moved) {
     std::vector<std::vector<Bounds<T>>> boxes;
     for (Pack& pack : packs_) {
@@ -108,7 +110,7 @@ class Blocks {
   // Pack under construction.
   struct PartialPack {
     const ShapeKernel<T>* kernel;
-    std::size_t place;  // index of one of its primitives in the list
+    std::size_t place;  // index of one primitive of the pack in the PrimitiveList
     std::vector<int> indices;
   };
   struct Pack {

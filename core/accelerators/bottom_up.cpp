@@ -6,10 +6,10 @@
 namespace orrery {
 namespace {
 
-// Bottom-up builder: merges the nearest boxes until one is left. The distance between two boxes is the
-// surface area of their union. Candidates are neighbours along a space-filling curve (Meister and Bittner,
-// "Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy Construction", TVCG 2018). A group of at
-// most kBlock<T> primitives of one kernel becomes a leaf.
+// Bottom-up builder: merges pairs of groups with the nearest boxes until one group is left. The distance
+// between two boxes is the surface area of their union. Only neighbours along a space-filling curve are
+// compared (Meister and Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy
+// Construction", TVCG 2018). A group of at most kBlock<T> primitives of one kernel becomes a leaf.
 template <class T>
 class BottomUpBuilder {
  public:
@@ -24,12 +24,12 @@ class BottomUpBuilder {
 
  private:
   static constexpr std::uint32_t kMixed = ~0u, kSingle = ~0u;
-  static constexpr std::size_t kGrain = 4096;  // minimum number of groups per parallel task
-  static constexpr int kReach = 8;             // neighbours compared on each side
+  static constexpr std::size_t kGrain = 4096;  // grain size of parallel loops, in groups
+  static constexpr int kReach = 8;             // groups compared on each side along the curve
 
   struct Group {
     Bounds<T> box;
-    std::uint32_t left, right;  // child groups; for a single item its index and kSingle
+    std::uint32_t left, right;  // child groups; for a single item: its index in items_, and kSingle
     std::uint32_t count, kernel;
   };
 
@@ -51,7 +51,7 @@ class BottomUpBuilder {
 
   static Vec3d center(const TreeItem<T>& item) { return (Vec3d(item.box.lo) + Vec3d(item.box.hi)) * 0.5; }
 
-  // Returns the position along the Z-order curve through `all`, 21 bits per axis.
+  // Returns the position of `at` along the Z-order curve through `all`, with 21 bits per axis.
   static std::uint64_t curve_place(const Boundsd& all, const Vec3d& at) {
     const auto spread = [](double from, double to, double x) {
       const double cells = 2097151;
@@ -67,8 +67,9 @@ class BottomUpBuilder {
            spread(all.lo.z, all.hi.z, at.z) << 2;
   }
 
-  // Merges pairs of groups that are each other's nearest neighbours. At least one such pair exists:
-  // nearest_of() breaks ties by the distance along the curve, then so that the choice is mutual.
+  // Merges pairs of groups that are each other's nearest neighbours. At least one such pair exists, because
+  // nearest_of() breaks ties: the group nearer along the curve wins, and groups at equal distances along the
+  // curve are paired consistently.
   void merge_neighbours() {
     const int count = static_cast<int>(line_.size());
     std::vector<int> nearest(line_.size());
@@ -83,8 +84,9 @@ class BottomUpBuilder {
       if (!mutual) next.push_back(at(i));
       if (mutual && i < j) next.push_back(merge(at(i), at(j)));
     }
-    // If sizes or gaps grow steadily along the curve, only one pair is mutual. Adjacent groups are then
-    // merged, which keeps the number of passes logarithmic.
+    // If box sizes or gaps grow steadily along the curve, only one pair is mutual. A pass that removes less
+    // than about 1/32 of the groups therefore also merges adjacent groups in pairs. This keeps the number of
+    // passes logarithmic.
     constexpr std::size_t kFewest = 32;
     if (next.size() + next.size() / kFewest > line_.size()) next = pairs_of(next);
     line_ = std::move(next);
@@ -125,7 +127,7 @@ class BottomUpBuilder {
     return static_cast<std::uint32_t>(groups_.size() - 1);
   }
 
-  // Converts a group to tree node `node` and its descendants.
+  // Stores the subtree of a group at tree node `node`.
   void fill(std::size_t node, std::uint32_t group, int depth) {
     interruption_point();
     const Group& g = groups_[group];
@@ -186,7 +188,7 @@ class BottomUpBuilder {
 
   std::vector<TreeItem<T>> items_;
   std::vector<Group> groups_;
-  std::vector<std::uint32_t> line_;  // groups that are not merged yet, in curve order
+  std::vector<std::uint32_t> line_;  // groups that have no parent yet, in curve order
   BoxTree<T> tree_;
 };
 

@@ -7,15 +7,17 @@
 #include "core/math/compress.h"
 #include "core/model/packet.h"
 
-// Probes: precomputed data of a ray or packet for slab tests against all children of a wide node.
+// Box testers: slab tests of a ray (RayBoxTester) or packet (PacketBoxTester) against all children of a wide
+// node. A tester stores the data that are computed once per ray or packet.
 //
-// Probes are conservative: they never reject a box whose contents the ray hits according to the rounded
-// intersection tests. padded() enlarges boxes for the rounding of their contents. Each probe moves the planes
-// apart by kRounding times the origin's largest coordinate and extends the far end by a few ulp. This covers
-// the rounding of distances in the slab test (Ize, "Robust BVH Ray Traversal", JCGT 2013) and in the
-// intersection tests.
+// Box tests are conservative: they accept every box that contains a hit found by the rounded intersection
+// tests. padded() enlarges boxes for the rounding of their contents. A tester also moves the planes of each
+// axis outward by kRounding times the largest absolute coordinate of the ray origins, and multiplies far
+// distances by kFarther. This covers the rounding of distances in the slab test (Ize, "Robust BVH Ray
+// Traversal", JCGT 2013) and in the intersection tests.
 namespace orrery {
 
+// Factor that enlarges far distances in slab tests.
 template <class T>
 inline constexpr T kFarther = 1 + 8 * std::numeric_limits<T>::epsilon();
 
@@ -34,12 +36,13 @@ inline ScalarOf<N> smallest(const MaskOf<N>& active, const N& v) {
   return stdx::hmin(select(active, v, N(std::numeric_limits<ScalarOf<N>>::infinity())));
 }
 
+// Box tester of one ray.
 template <class T>
 class RayBoxTester {
  public:
   using N = Lanes<T>;
 
-  // Precomputed data of all rays of a register.
+  // Data of all rays of a register, from which the testers of its lanes are made.
   struct Register {
     using Array = std::array<T, static_cast<std::size_t>(kWidth<T>)>;
     struct Axis {
@@ -82,7 +85,7 @@ class RayBoxTester {
     set(2, ray.origin.z, ray.direction.z, pad, least);
   }
 
-  // Returns the octant of the direction: bit i is set if the component on axis i is negative.
+  // Returns the octant of the direction: bit i is set if component i is negative.
   std::uint8_t octant() const {
     return static_cast<std::uint8_t>((near_[0] & 1) | (near_[1] & 1) << 1 | (near_[2] & 1) << 2);
   }
@@ -116,8 +119,9 @@ class RayBoxTester {
   }
 
  private:
-  // Precomputes the data of one axis. A direction component near 0 is replaced by a tiny one, so that its
-  // reciprocal is finite. It is too small to move the ray out of a box.
+  // Sets the data of one axis. A direction component smaller than `least` is replaced by `least` with the
+  // same sign, so that its reciprocal is finite. The padding of the boxes exceeds the displacement of the
+  // ray.
   void set(std::size_t axis, T origin, T direction, T pad, T least) {
     if (std::abs(direction) < least) direction = std::copysign(least, direction);
     const T inverse = 1 / direction;
@@ -131,14 +135,13 @@ class RayBoxTester {
   std::array<T, 3> inverse_, near_offset_, far_offset_;
 };
 
-// Probe with the intervals of a packet's origins and directions. Enters every box that at least one of the
-// rays enters.
+// Box tester of a packet, computed from the intervals of its origins and directions.
 template <class T>
 class PacketBoxTester {
  public:
   using N = Lanes<T>;
 
-  // Covers the `active` rays. REQUIRES: any(active).
+  // Makes a tester of the `active` rays. REQUIRES: any(active).
   PacketBoxTester(const Ray<N>& rays, const MaskOf<N>& active) {
     std::array<Interval, 3> origin, direction;
     T pad = 0, size = 0;
@@ -156,13 +159,15 @@ class PacketBoxTester {
   // Returns whether all rays start at origin().
   bool one_origin() const { return one_origin_; }
   const Vec3<T>& origin() const { return origin_; }
+  // Returns the octant of all directions: see RayBoxTester. REQUIRES: narrow().
   std::uint8_t octant() const {
     return static_cast<std::uint8_t>((axis_[0].near & 1) | (axis_[1].near & 1) << 1 |
                                      (axis_[2].near & 1) << 2);
   }
-  // Returns whether the rays are coherent enough to be traversed together.
+  // Returns whether the rays are coherent enough to be traversed together: all directions have one octant and
+  // similar components.
   bool narrow() const { return narrow_; }
-  // Returns the approximate width of the packet where it reaches the box, in metres.
+  // Returns the approximate width of the packet at the distance of the box, in metres.
   T width_at(const Bounds<T>& box) const {
     T distance = 0;
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -171,6 +176,8 @@ class PacketBoxTester {
     return origins_ + directions_ * distance;
   }
 
+  // Like RayBoxTester::enter(), with the smallest entry distance over the rays. Sets the bit of every box
+  // that at least one of the rays enters. REQUIRES: narrow().
   [[gnu::always_inline]] unsigned enter(const BoxPlanes<T>& planes, T limit, N& near) const {
     near = N(T(0));
     N far = N(limit);
@@ -215,7 +222,8 @@ class PacketBoxTester {
   }
 
   std::array<Axis, 3> axis_;
-  T origins_ = 0, directions_ = 0;  // spread of origins in metres; of directions, relative to their size
+  T origins_ = 0;     // largest extent of the origins along an axis, metres
+  T directions_ = 0;  // largest extent of the directions along an axis, relative to their largest component
   bool narrow_ = true, one_origin_ = false;
   Vec3<T> origin_;
 };

@@ -12,16 +12,16 @@ template <class T>
 struct TreeItem {
   Bounds<T> box;
   std::uint32_t primitive;  // index in the PrimitiveList
-  std::uint32_t kernel;     // items of different kernels never share a leaf
+  std::uint32_t kernel;     // run of primitives with one kernel; a leaf has items of one run
 };
 
-// Returns the bounded primitives of the list, with padded boxes.
+// Returns the bounded primitives of the list, with padded boxes. Throws Cancelled.
 template <class T>
 std::vector<TreeItem<T>> items_of(const PrimitiveList<T>& primitives) {
   std::vector<TreeItem<T>> items;
   items.reserve(primitives.size());
   const ShapeKernel<T>* last = nullptr;
-  std::uint32_t kernel = 0;  // primitives of one kernel are adjacent
+  std::uint32_t kernel = 0;  // counts runs; primitives of one kernel are adjacent in the list
   for (std::size_t i = 0; i < primitives.size(); ++i) {
     interruption_point(i);
     if (primitives[i].kernel != last) ++kernel;
@@ -32,17 +32,18 @@ std::vector<TreeItem<T>> items_of(const PrimitiveList<T>& primitives) {
   return items;
 }
 
-// Depth from which builders split the items of a node into halves. This bounds the depth for any input: 28
-// levels reduce 2^31 items to blocks, and at most 8 more divide a block by kernel.
+// Depth from which builders split the items of a node into halves of equal count. This bounds the depth for
+// any input: 28 levels of halving reduce 2^31 items to blocks of 8. At most 8 more levels divide a block into
+// leaves of one kernel.
 inline constexpr int kDepthGuard = 48;
 inline constexpr int kDeepestTree = kDepthGuard + 28 + 8;
 
-// Binary tree of boxes. nodes[0] is the root; leaves refer to ranges of items.
+// Binary tree of boxes. nodes[0] is the root. Each leaf refers to a range of items.
 template <class T>
 struct BoxTree {
   struct Node {
     Bounds<T> box;
-    std::uint32_t left = 0, right = 0;  // child nodes; in a leaf: first item and end
+    std::uint32_t left = 0, right = 0;  // indices of the children; in a leaf: items [left, right)
     bool leaf = false;
   };
   std::vector<Node> nodes;  // some may be unused

@@ -3,8 +3,8 @@
 namespace orrery {
 namespace {
 
-// List of primitives. A slab test with the axis-aligned box of a primitive precedes the test of the
-// primitive. Every ray tests all unbounded primitives.
+// List of primitives. A bounded primitive is tested only if a ray of the register enters its axis-aligned
+// box. Every ray tests all unbounded primitives.
 template <class T>
 class Boxes final : public Accelerator<T> {
  public:

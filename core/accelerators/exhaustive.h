@@ -7,8 +7,7 @@ namespace orrery {
 // Kind of query for a ray: its closest hit, or whether any primitive occludes it.
 enum class Query { closest, occlude };
 
-// Tests of every ray against every primitive of a list.
-
+// Tests every ray of `groups` against every primitive. See Accelerator::closest().
 template <class T>
 void closest_exhaustive(const PrimitiveList<T>& primitives, const RayBatch<T>& rays, const LaneGroups& groups,
                         HitBatch<T>& hits, AcceleratorCounts& counts) {
@@ -18,7 +17,8 @@ void closest_exhaustive(const PrimitiveList<T>& primitives, const RayBatch<T>& r
   counts.primitive_tests += primitives.size() * active_rays(rays, groups);
 }
 
-// Sets t_max of occluded rays to -1. Returns the registers that still contain active rays.
+// Tests rays of `groups` against the primitives and sets t_max of occluded rays to -1. Returns the registers
+// that still contain active rays.
 template <class T>
 LaneGroups occlude_exhaustive(const PrimitiveList<T>& primitives, RayBatch<T>& rays, const LaneGroups& groups,
                               AcceleratorCounts& counts) {

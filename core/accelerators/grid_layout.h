@@ -15,7 +15,8 @@ using CellIndex = std::array<int, 3>;
 template <class T>
 class GridLayout {
  public:
-  // Divides the box into about `cells` cells. The cells are nearly cubic unless the box is too thin.
+  // Divides the box into about `cells` cells, with at most 1,024 cells along an axis. The cells are nearly
+  // cubic unless the box is too thin.
   GridLayout(const Bounds<T>& box, double cells) : box_(box), count_(sides_for(box.hi - box.lo, cells)) {
     constexpr T kWider = 1 + 4 * std::numeric_limits<T>::epsilon();  // keeps the last plane outside the box
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -53,10 +54,11 @@ class GridLayout {
         for (int x = x0; x <= x1; ++x) visit(CellIndex{x, y, z});
   }
 
-  // Calls visit(index, from, to) for the cells that the ray may touch in [from, to], from near to far, while
-  // open(from) is true. Steps through layers along the main axis, rows in each layer and cells in each row
-  // (after Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing", 1987). If the ray is close
-  // to a plane, visits the cells on both sides.
+  // Calls visit(index, near, far) for the cells that the ray may touch in [from, to], from near to far. The
+  // ray is in the cell from distance `near` to `far`. Stops when open(near) returns false. Steps through
+  // layers along the main axis, rows in each layer and cells in each row (after Amanatides and Woo, "A Fast
+  // Voxel Traversal Algorithm for Ray Tracing", 1987). If the ray is close to a plane, visits the cells on
+  // both sides.
   template <class Open, class Visit>
   void for_each_along(const SingleRay<T>& ray, const RayBoxTester<T>& probe, T from, T to, const Open& open,
                       const Visit& visit) const {
@@ -99,7 +101,7 @@ class GridLayout {
     return count;
   }
 
-  // Returns the layer at a distance of `layers` cells from the low side, clamped to the grid.
+  // Returns the index of the layer at a distance of `layers` cells from the low side, clamped to the grid.
   int layer(std::size_t axis, T layers) const {
     const T last = static_cast<T>(count_[axis] - 1);
     return layers > 0 ? static_cast<int>(std::min(layers, last)) : 0;
@@ -132,7 +134,7 @@ class GridLayout {
   }
 
   Bounds<T> box_;
-  Vec3<T> size_, per_size_;  // cell size and its reciprocal; 0 for a flat box
+  Vec3<T> size_, per_size_;  // cell size and its reciprocal; both 0 on an axis along which the box is flat
   CellIndex count_;
 };
 

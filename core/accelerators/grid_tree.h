@@ -61,11 +61,11 @@ class GridTree {
  private:
   struct Grid {
     GridLayout<T> layout;
-    std::size_t first;  // index of the first cell
+    std::size_t first;  // index in cells_ of the first cell
   };
   static constexpr std::uint32_t kGrid = ~0u;
   struct Cell {
-    std::uint32_t first = 0, count = 0;  // range in names_; for a nested grid its index and kGrid
+    std::uint32_t first = 0, count = 0;  // range in names_; for a nested grid: its index in grids_, and kGrid
   };
   // Cell that may become a grid.
   struct PendingCell {
@@ -74,11 +74,12 @@ class GridTree {
     int level;
     std::size_t cell;
   };
-  // Cells of one level. One list contains the items of all cells, cell by cell, to save allocations.
+  // Cell of one level: number of its items, and index in cells_.
   struct LevelCell {
     Bounds<T> box;
     std::size_t items, cell;
   };
+  // All cells of one level. `items` contains the items of all cells, cell by cell, which saves allocations.
   struct Level {
     std::vector<LevelCell> cells;
     std::vector<std::uint32_t> items;
@@ -99,8 +100,9 @@ class GridTree {
     return box;
   }
 
-  // Replaces the cell with a grid. Reduces the number of cells while the grid would add too many references.
-  // Returns false if no grid of at least two cells is acceptable, or if the cell needs none.
+  // Replaces the cell with a grid. Reduces the number of grid cells while the grid would add more than `left`
+  // references, or more than four per item to a nested grid. Returns false if no grid of at least two cells
+  // is acceptable, or if the cell needs no grid.
   bool divide(const PendingCell& cell, const std::vector<TreeItem<T>>& items, std::size_t& left,
               Level& next) {
     const std::size_t count = cell.items.size();
@@ -135,7 +137,7 @@ class GridTree {
         layout.for_each_touching(items[item].box, [&](const CellIndex& i) { visit(layout.number(i), item); });
       }
     };
-    std::vector<std::size_t> places(layout.cells());  // items per cell, then index of the next free entry
+    std::vector<std::size_t> places(layout.cells());  // items per cell, then next free index in next.items
     for_each_item_in_cell([&](std::size_t i, std::uint32_t) { ++places[i]; });
     std::size_t end = next.items.size();
     layout.for_each_touching(layout.box(), [&](const CellIndex& i) {

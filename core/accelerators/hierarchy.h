@@ -5,7 +5,8 @@
 
 namespace orrery {
 
-// Bounding volume hierarchy over a BoxTree from Builder::build(). Every ray tests all unbounded primitives.
+// Bounding volume hierarchy: a WideTree converted from the BoxTree that Builder::build() returns. Unbounded
+// primitives are not in the tree, and every ray tests all of them.
 template <class T, class Builder>
 class Hierarchy final : public Accelerator<T> {
  public:

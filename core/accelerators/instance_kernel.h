@@ -6,14 +6,14 @@
 
 // Instances as primitives, static or moving. An Instance<T> has
 //   std::shared_ptr<const ModelGeometry<T>> model;
-//   int first, last;                its primitives have the numbers [first, last) in the scene
-//   T step_scale, step_base;        SurfaceBatch::step in the world: step in the model * scale + base
+//   int first, last;                primitives of the instance: numbers [first, last) in the scene
+//   T step_scale, step_base;        world SurfaceBatch::step: step_scale * step in the model + step_base
 //   static constexpr bool kTimed;   whether the pose depends on the rays' time
 //   Pose pose(rays, i) const;       transforms for register i: to_model(ray), and to the world
 //                                   point(p), vector(v), normal(n), without normalisation
 namespace orrery {
 
-// Rays in the coordinates of one model, and their hits in it.
+// Rays in the coordinates of one model, and their hits on the primitives of the model.
 template <class T>
 struct ModelVisit {
   using N = Lanes<T>;
@@ -134,8 +134,8 @@ class InstanceKernelOf : public ShapeKernel<T> {
     return pose;
   }
 
-  // Calls visit(i, mask, instance, ids in its model) for each register of `groups` and each instance hit in
-  // it. Lanes of one register may hit different instances.
+  // Calls visit(i, mask, instance, ids) for each register i of `groups` and each instance that a lane of the
+  // register hits. `mask` selects these lanes. `ids` are the numbers of the hit primitives within the model.
   template <class Visit>
   void for_each_hit(const HitBatch<T>& hits, const LaneGroups& groups, const Visit& visit) const {
     const auto owner = [this](IndexOf<T> id) {
@@ -150,7 +150,7 @@ class InstanceKernelOf : public ShapeKernel<T> {
         const Instance& placed = *owner(one);
         const auto here = open && id >= IndexOf<T>(placed.first) && id < IndexOf<T>(placed.last);
         open = open && !here && id != one;
-        if (!any(here)) continue;  // hit of another kernel
+        if (!any(here)) continue;  // the lane hits a primitive of another kernel
         IndexLanes<T> in_model(IndexOf<T>{kNoPrimitive});
         stdx::where(here, in_model) = id - IndexOf<T>(placed.first);
         visit(i, mask_cast<N>(here), placed, in_model);

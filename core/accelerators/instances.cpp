@@ -3,7 +3,8 @@
 namespace orrery {
 namespace {
 
-// Packed instances. Single rays that enter the same instance are gathered into batches first.
+// Packed instances. Consecutive rays or packets that are tested against the same block are gathered into one
+// batch per instance.
 template <class T>
 class PackedInstances final : public PackedPrimitives<T> {
  public:
@@ -77,7 +78,8 @@ class PackedInstances final : public PackedPrimitives<T> {
  private:
   static constexpr std::size_t kSize = static_cast<std::size_t>(kBlock<T>);
 
-  // Calls act(instance, pairs) for each instance of a block, with up to `most` pairs of that block.
+  // Calls act(instance, pairs) for each instance of each block, with up to `most` consecutive pairs of that
+  // block.
   template <class Act>
   void each_instance(RayBlockPairs pairs, int most, const Act& act) const {
     while (!pairs.empty()) {

@@ -23,9 +23,9 @@ struct ModelGeometry {
 template <class T>
 struct PlacedInstance {
   std::shared_ptr<const ModelGeometry<T>> model;
-  int first, last;  // its primitives have the numbers [first, last) in the scene
+  int first, last;  // primitives of the instance: numbers [first, last) in the scene
   Affine<T> world_from_model, model_from_world;
-  T step_scale, step_base;  // SurfaceBatch::step in the world: step in the model * scale + base
+  T step_scale, step_base;  // SurfaceBatch::step in the world is step_scale * step in the model + step_base
 
   static constexpr bool kTimed = false;
   struct Pose {
@@ -50,8 +50,8 @@ using PlacedList = std::vector<PlacedInstance<T>>;
 // Returns the box around a transformed box. REQUIRES: `model` is bounded.
 Boundsd box_around(const Boundsd& model, const Affined& world_from_model);
 
-// Returns the world box of a placed model, padded for the rounding of rays transformed in float. Infinite if
-// the model is unbounded.
+// Returns the world box of a placed model, padded for the rounding of rays transformed in float. Returns an
+// infinite box if the model is unbounded.
 Boundsd bounds_of(const Boundsd& model, const Affined& world_from_model);
 
 // Kernel of the static instances of a scene. Hits contain the number of the hit primitive in the scene.

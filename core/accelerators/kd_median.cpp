@@ -3,7 +3,8 @@
 namespace orrery {
 namespace {
 
-// Splits a cell across its longest side, at the median of its items' centres.
+// Splits a cell across its longest side, at the median of its items' centres. A cell becomes a leaf if its
+// items fit in one block.
 template <class T>
 class MedianSplitter {
  public:
@@ -23,7 +24,7 @@ class MedianSplitter {
     }
     const auto middle = centers.begin() + static_cast<std::ptrdiff_t>(centers.size() / 2);
     std::nth_element(centers.begin(), middle, centers.end());
-    if (cut(cell, axis, *middle) * 4 > cell.items.size() * 3) return {};  // too many would be on both sides
+    if (cut(cell, axis, *middle) * 4 > cell.items.size() * 3) return {};  // over 3/4 would be on both sides
     return SpacePlane{axis, *middle};
   }
 

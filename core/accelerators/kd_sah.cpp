@@ -5,9 +5,9 @@
 namespace orrery {
 namespace {
 
-// Chooses the plane of least cost by the surface area heuristic (MacDonald and Booth, "Heuristics for ray
-// tracing using space subdivision", 1990), among 31 candidates per axis (Hurley et al., "Fast Ray Tracing for
-// Modern General Purpose CPU", 2002).
+// Splits a cell at the plane of the lowest cost by the surface area heuristic (MacDonald and Booth,
+// "Heuristics for ray tracing using space subdivision", 1990), among 31 candidates per axis (Hurley et al.,
+// "Fast Ray Tracing for Modern General Purpose CPU", 2002).
 template <class T>
 class SurfaceSplitter {
  public:
@@ -26,8 +26,8 @@ class SurfaceSplitter {
 
  private:
   static constexpr std::size_t kBins = 32;
-  // Relative costs of visiting a node and testing a block, and the cost factor of planes that cut off empty
-  // space.
+  // Relative costs of visiting a node and of testing a block. The cost of a plane that cuts off empty space
+  // is multiplied by kEmptyShare.
   static constexpr double kVisitCost = 0.6, kBlockCost = 1, kEmptyShare = 0.8;
 
   static double cost_of(std::size_t items) {

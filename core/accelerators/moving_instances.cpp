@@ -9,9 +9,10 @@ namespace {
 constexpr int kMaxPieces = 64;       // maximum pieces per motion segment
 constexpr double kPieceDegrees = 4;  // maximum rotation per piece, unless kMaxPieces is exceeded
 
-// Extends the box by the path of a model point between two placements. The point rotates about a unit axis
-// while its scaled position v moves linearly. Its second derivative is then at most |turn|^2 |v| + 2 |turn|
-// |v'|, for time from 0 to 1. The path deviates from its chord by at most an eighth of that.
+// Extends the box by the path of a model point between two placements. The point rotates about a unit axis by
+// `turn` radians while its scaled position v moves linearly, for time from 0 to 1. The second derivative of
+// the path is at most |turn|^2 |v| + 2 |turn| |v'|. The path deviates from its chord by at most an eighth of
+// this bound.
 void include_path(const Vec3d& axis, const Placement& from, const Placement& to, const Vec3d& point,
                   Boundsd& box) {
   const auto at = [&](const Placement& p) {
@@ -20,7 +21,7 @@ void include_path(const Vec3d& axis, const Placement& from, const Placement& to,
   const double turn = std::abs(to.degrees - from.degrees) * (std::numbers::pi / 180);
   const double reach = std::max(length(point * from.scale), length(point * to.scale));
   const double off = turn * (turn * reach + 2 * length(point * (to.scale - from.scale))) / 8;
-  const Vec3d pad(std::min(off, 2 * reach));  // the rotating part stays within `reach`
+  const Vec3d pad(std::min(off, 2 * reach));  // the rotating part stays within `reach` of the origin
   for (const Vec3d& end : {at(from), at(to)}) {
     box.include(end - pad);
     box.include(end + pad);
@@ -88,8 +89,8 @@ MovingInstance<T>::MovingInstance(const Instance& instance, std::shared_ptr<cons
       max_translate = std::max(max_translate, max_component(abs(placement.translate)));
     }
   }
-  // Twice the step of resting instances, because the rotation is rounded once more. sqrt(3) < 2 bounds how
-  // much a rotation enlarges the largest coordinate.
+  // Twice the step of static instances, because the rotation is rounded once more. The factor 2 > sqrt(3)
+  // bounds how much a rotation enlarges the largest coordinate.
   step_scale = static_cast<T>(8 * max_scale);
   step_base = static_cast<T>(32 * double{std::numeric_limits<T>::epsilon()} * max_translate);
 }

@@ -4,28 +4,30 @@
 #include "core/math/elementary.h"
 #include "core/math/motion_segments.h"
 
-// Instances that move during the exposure, or whose models do. Each ray is transformed to model coordinates
-// at its own time.
+// Instances that move during the exposure, or whose models contain moving shapes. Each ray is transformed to
+// model coordinates at the time of the ray.
 namespace orrery {
 
-// Model in motion. Between two moments its scale, translation and angle about its axis change linearly.
+// Instance in motion. Between consecutive moments, its scale, its translation and its angle about the
+// rotation axis change linearly.
 template <class T>
 struct MovingInstance {
   using N = Lanes<T>;
 
-  // Placement at one moment, and the change until the next.
+  // Placement at one moment, and the change until the next moment.
   struct Moment {
     // Axes of the model after a rotation by angle a from this moment: along + across cos a + beyond sin a.
-    // The terms are the components parallel to the rotation axis, across it, and perpendicular to both.
+    // They are the component parallel to the rotation axis, the component perpendicular to it, and the cross
+    // product of the rotation axis and the model axis.
     std::array<Vec3<T>, 3> along, across, beyond;
     T turns;                                               // rotation until the next moment, in turns
-    Vec3<T> scale, more_scale, translate, more_translate;  // placement, and its change until then
+    Vec3<T> scale, more_scale, translate, more_translate;  // at this moment, and change until the next
   };
 
   std::shared_ptr<const ModelGeometry<T>> model;
-  int first, last;  // its primitives have the numbers [first, last) in the scene
+  int first, last;  // primitives of the instance: numbers [first, last) in the scene
   MotionSegments<T> segments;
-  std::vector<Moment> moments;  // all but the last
+  std::vector<Moment> moments;  // one per motion segment: the moment at which it starts
   T step_scale, step_base;      // see PlacedInstance
 
   MovingInstance(const Instance& instance, std::shared_ptr<const ModelGeometry<T>> of, int number,

@@ -4,8 +4,9 @@
 namespace orrery {
 namespace {
 
-// Binary tree of axis-aligned boxes. A node also has an oriented box if that is much smaller (Gottschalk,
-// Lin, Manocha, "OBBTree: A Hierarchical Structure for Rapid Interference Detection", 1996).
+// Binary tree of axis-aligned boxes. A node also has an oriented box if it is much smaller than the
+// axis-aligned box (Gottschalk, Lin, Manocha, "OBBTree: A Hierarchical Structure for Rapid Interference
+// Detection", 1996).
 template <class T>
 class OrientedTree {
  public:
@@ -54,7 +55,7 @@ class OrientedTree {
   struct Node {
     Bounds<T> box;
     std::uint32_t oriented = kNone;  // index, or kNone
-    std::uint32_t next = 0;          // first of two adjacent children; in a leaf: its block
+    std::uint32_t next = 0;          // first of two adjacent children; in a leaf: name of its block
     bool leaf = false;
   };
   struct Entry {
@@ -71,8 +72,8 @@ class OrientedTree {
     return oriented_[node.oriented].clip(state.ray.ray, from, to);
   }
 
-  // Converts node `at` of the tree to node `me`. Appends the triangles of its primitives to `hull`. Returns
-  // their moments.
+  // Converts the subtree at node `at` of the tree to node `me`. Appends the hull triangles of its primitives
+  // to `hull`. Returns the moments of these triangles.
   SurfaceMoments fill(std::size_t me, const BoxTree<T>& tree, std::uint32_t at,
                       const PrimitiveList<T>& primitives, int level, std::vector<HullTriangle>& hull) {
     interruption_point();

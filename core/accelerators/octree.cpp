@@ -3,8 +3,8 @@
 namespace orrery {
 namespace {
 
-// Splits a cell at its middle into eight equal ones (Glassner, "Space Subdivision for Fast Ray Tracing",
-// 1984), stored as three planes, one per axis.
+// Splits a cell at its middle into eight equal cells (Glassner, "Space Subdivision for Fast Ray Tracing",
+// 1984). The tree stores them as three levels of planes, one level per axis.
 template <class T>
 class OctantSplitter {
  public:
@@ -22,8 +22,8 @@ class OctantSplitter {
  private:
   static constexpr int kDeepest = 3 * 24;
 
-  // Returns false for few items, at the maximum depth, or if items would touch three or more octants on
-  // average.
+  // Returns false if the items fit in one block, if the cell is at the maximum depth, or if items would touch
+  // three or more octants on average.
   bool pays(const SpaceCell<T>& cell) const {
     if (cell.items.size() <= Blocks<T>::kSize || cell.depth >= kDeepest) return false;
     const Vec3<T> middle = (cell.box.lo + cell.box.hi) * T(0.5);

@@ -4,8 +4,8 @@
 
 namespace orrery {
 
-// Area of a surface, and the integrals of x and x x^T over it. They determine its principal axes. Moments of
-// parts add up to those of the whole.
+// Area of a surface, and the integrals of x and x x^T over all points x of the surface. They determine the
+// principal axes. The moments of a surface are the sums of the moments of its parts.
 struct SurfaceMoments {
   double area = 0;
   Vec3d first;
@@ -15,19 +15,19 @@ struct SurfaceMoments {
   void add(const SurfaceMoments& other);
 };
 
-// Returns the principal axes of a surface: three orthogonal unit eigenvectors of its covariance. Weights by
-// area make them independent of the tessellation (Gottschalk, Lin, Manocha, "OBBTree", 1996). Returns the
-// world axes if the area is 0.
+// Returns the principal axes of a surface: three orthogonal unit eigenvectors of the covariance of its
+// points. Weighting by area makes them independent of the tessellation (Gottschalk, Lin, Manocha, "OBBTree",
+// 1996). Returns the world axes if the area is 0.
 std::array<Vec3d, 3> principal_axes(const SurfaceMoments& moments);
 
 // Oriented bounding box.
 template <class T>
 struct OrientedBox {
   Vec3<T> center;
-  std::array<Vec3<T>, 3> axes;  // nearly orthogonal; exact enough, because `box` is measured along them
+  std::array<Vec3<T>, 3> axes;  // nearly orthogonal unit vectors; `box` is measured along the rounded axes
   Bounds<T> box;                // relative to the center, padded for rounding
 
-  // Returns the box along `axes` around all corners of the triangles.
+  // Returns the oriented box along `axes` that contains all corners of the triangles.
   static OrientedBox around(const std::array<Vec3d, 3>& axes, std::span<const HullTriangle> hull);
 
   double half_area() const {
@@ -59,7 +59,7 @@ std::vector<HullTriangle> hull_of(const Primitive<T>& primitive) {
 }
 
 // Returns whether the oriented box is small enough to justify its test, which takes three times as long as
-// that of an axis-aligned box.
+// the test of an axis-aligned box.
 template <class T>
 bool oriented_pays(const OrientedBox<T>& oriented, const Bounds<T>& box) {
   constexpr double kShare = 0.7;

@@ -4,7 +4,8 @@
 namespace orrery {
 namespace {
 
-// One axis-aligned box per primitive, and an oriented box if that is much smaller.
+// List of primitives. Each bounded primitive has an axis-aligned box, and an oriented box if it is much
+// smaller.
 template <class T>
 class PerPrimitiveObb {
  public:

@@ -49,8 +49,8 @@ class SahBuilder {
 
  private:
   static constexpr std::size_t kBins = 16, kBinsOfFew = 8;
-  static constexpr std::uint32_t kFew = 16;         // maximum items of a node for kBinsOfFew
-  static constexpr std::uint32_t kParallel = 4096;  // minimum items of a node for parallel children
+  static constexpr std::uint32_t kFew = 16;         // nodes of up to kFew items use kBinsOfFew bins
+  static constexpr std::uint32_t kParallel = 4096;  // children of smaller nodes are built serially
   using Sides = typename BoxLanes<T>::Sides;
   struct Bin {
     BoxLanes<T> box;
@@ -58,11 +58,11 @@ class SahBuilder {
   };
   using Bins = std::array<std::array<Bin, 3>, kBins>;  // [bin][axis]
   struct Split {
-    T parts = std::numeric_limits<T>::infinity();  // sum of half area times cost over both sides
+    T parts = std::numeric_limits<T>::infinity();  // sum over children: half area * cost_of(items)
     std::size_t axis = 0, bin = 0;
   };
   // Maps the centre of a box to a position along each axis, in units of bins. Bin i contains the positions in
-  // [i, i + 1). Positions outside all bins belong to the first or the last one.
+  // [i, i + 1). Positions outside all bins belong to the first or the last bin.
   struct Scale {
     Sides from, factor;
     Sides places(const BoxLanes<T>& box) const { return (box.lo + box.hi - from) * factor; }
@@ -70,7 +70,7 @@ class SahBuilder {
 
   explicit SahBuilder(BoxTree<T>& tree) : tree_(tree) {}
 
-  // Builds node `at` from items [from, to). Its descendants use the next 2 (to - from) - 2 elements of
+  // Builds node `at` from items [from, to). The descendants use the next 2 (to - from) - 2 elements of
   // tree_.nodes.
   void fill(std::uint32_t at, std::uint32_t from, std::uint32_t to, int depth) {
     auto& node = tree_.nodes[at];
@@ -104,7 +104,8 @@ class SahBuilder {
     }
   }
 
-  // Reorders the items. Returns the first item of the right child, or `from` for a leaf.
+  // Splits items [from, to) and reorders them accordingly. Returns the first item of the right child, or
+  // `from` if the node becomes a leaf.
   std::uint32_t choose_middle(const Bounds<T>& box, const BoxLanes<T>& centers, std::uint32_t from,
                               std::uint32_t to, bool mixed, int depth) {
     const std::uint32_t count = to - from;

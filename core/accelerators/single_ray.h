@@ -14,7 +14,7 @@ struct TraversalState {
   SingleHit<T> hit;
   AcceleratorCounts& counts;
 
-  // Returns whether a hit at distance `from` may be nearer than the current one. False for occluded rays,
+  // Returns whether a hit at distance `from` or farther can replace the current hit. False for occluded rays,
   // whose t is -1.
   bool open(T from) const { return from <= hit.t * kFarther<T>; }
 

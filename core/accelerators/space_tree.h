@@ -15,7 +15,7 @@ template <class T>
 struct SpaceCell {
   Bounds<T> box;
   std::span<const std::uint32_t> items;  // indices of TreeItems, ascending
-  int depth;                             // number of planes above it
+  int depth;                             // number of planes above the cell
   std::size_t node;
 };
 
@@ -95,7 +95,7 @@ class SpaceTree {
       } else if (enters_far) {
         at = far;
       } else {
-        at = near;  // reached only with NaN: any cell will do
+        at = near;  // reached only if a distance is NaN; the choice does not matter
       }
     }
   }
@@ -105,17 +105,18 @@ class SpaceTree {
   static constexpr int kDeepest = 80;  // maximum number of planes above a cell
   struct Node {
     T plane;
-    std::uint32_t axis, first, count;  // first of two adjacent children; in a leaf: its block names
+    std::uint32_t axis, first, count;  // first of two adjacent children; in a leaf: range in names_
   };
   struct Stretch {
     std::uint32_t node;
     T from, to;
   };
-  // Cells of one depth. One list contains the items of all cells, cell by cell, to save allocations.
+  // Cell of one depth: number of its items, and index in nodes_.
   struct LevelCell {
     Bounds<T> box;
     std::size_t items, node;
   };
+  // All cells of one depth. `items` contains the items of all cells, cell by cell, which saves allocations.
   struct Level {
     std::vector<LevelCell> cells;
     std::vector<std::uint32_t> items;

@@ -8,7 +8,7 @@
 namespace orrery {
 namespace {
 
-// Registers of a batch, prepared for box tests.
+// Ray registers of a batch, prepared for box tests.
 template <class T>
 class BoxRays {
  public:
@@ -68,7 +68,8 @@ class StaticAndMovingBvh final : public Accelerator<T> {
   using N = Lanes<T>;
   using Node = typename BoxTree<T>::Node;
 
-  // Returns the registers in which a ray enters the node's box before its end in `ends`.
+  // Returns the registers in which at least one ray enters the node's box. `ends` contains the far end of
+  // each ray: t_max or the distance of its nearest known hit.
   static LaneGroups entering(const Node& node, const LaneGroups& groups, const BoxRays<T>& boxes,
                              const Array<T>& ends, AcceleratorCounts& counts) {
     LaneGroups in;
@@ -81,7 +82,8 @@ class StaticAndMovingBvh final : public Accelerator<T> {
     return in;
   }
 
-  // Finds the closest hits below node `at`. Visits the child that is nearer along the first ray first.
+  // Finds the closest hits in the subtree of node `at`. Visits the child first whose centre is nearer along
+  // the direction of the first ray.
   void find(std::uint32_t at, const LaneGroups& groups, const BoxRays<T>& boxes, const RayBatch<T>& rays,
             HitBatch<T>& hits, AcceleratorCounts& counts) const {
     const Node& node = tree_.nodes[at];
@@ -103,6 +105,7 @@ class StaticAndMovingBvh final : public Accelerator<T> {
     find(right_first ? node.left : node.right, in, boxes, rays, hits, counts);
   }
 
+  // Sets t_max to -1 for rays that hit a primitive in the subtree of node `at`.
   void cover(std::uint32_t at, const LaneGroups& groups, const BoxRays<T>& boxes, RayBatch<T>& rays,
              AcceleratorCounts& counts) const {
     const Node& node = tree_.nodes[at];

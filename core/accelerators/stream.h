@@ -26,7 +26,7 @@ class Slots {
   };
 };
 
-// Rays or packets that traverse a tree together, with their probes and hits.
+// Rays or packets that traverse a tree together, with their box testers and hits.
 template <class RaysOf, class ProbeOf, class HitOf, int kMost>
 struct TraversalGroup {
   static constexpr int kCapacity = kMost;
@@ -46,14 +46,15 @@ struct TraversalGroup {
 
 // Ray stream traversal: opens each node once for all rays that enter it. This gives long SIMD loops and few
 // mispredicted branches (Tsakok, "Faster Incoherent Rays: Multi-BVH Ray Stream Tracing", HPG 2009). For
-// Query::closest, children are visited in the order of their smallest entry distance over the rays.
+// Query::closest, children are visited in the order of the smallest entry distance over all rays in the node.
 template <Query kQuery, class T, class Traversals>
 class Stream {
  public:
   Stream(const WideTree<T>& tree, Traversals& traversals, AcceleratorCounts& counts)
       : tree_(tree), traversals_(traversals), counts_(counts), far_(tree.bytes() > kNear) {}
 
-  // Runs the traversals with the indices in `ids`. REQUIRES: kPad elements after the last one are readable.
+  // Runs the traversals with the indices ids[0] to ids[count - 1]. REQUIRES: kPad elements after the last
+  // index are readable.
   static constexpr int kPad = 16;
   void run(const std::int32_t* ids, int count) { visit(tree_.root(), ids, count, count, room_.data()); }
 
@@ -72,17 +73,17 @@ class Stream {
   };
   using Lists = std::array<List, kLists>;
 
-  // Maximum number of traversals in a node that continue one by one, because lists would cost more than they
-  // save.
+  // If at most kFew traversals enter a node, they continue one by one, because lists would cost more than
+  // they save.
   static constexpr int kFew = 2;
   // Trees of more than kNear bytes do not fit in the cache. Nodes and blocks are then prefetched, and
-  // traversals that continue alone are interleaved to hide the latency. This is faster for up to kFewFar
-  // traversals in a node. For Query::closest it is faster for up to kMaxDiverging, if at most one in
-  // kDivergingShare of the parent's traversals enters the node.
+  // traversals that continue alone are interleaved to hide the latency. Interleaving is faster than lists for
+  // up to kFewFar traversals in a node. For Query::closest, it is also faster for up to kMaxDiverging
+  // traversals if at most 1/kDivergingShare of the parent's traversals enter the node.
   static constexpr std::size_t kNear = std::size_t{16} << 20;
   static constexpr int kFewFar = 8, kMaxDiverging = 64, kDivergingShare = 4, kInterleaved = 16;
 
-  // Lists are read and written in whole registers, so each has kPad extra elements.
+  // Lists are read and written in whole registers, so each list has kPad extra elements.
   static constexpr int room_for(int count) { return (kWidth<T> + 1) * (count + kPad); }
   static constexpr int kReserve = (kDeepestTree + 1) * room_for(1);
   static constexpr int kRoom = kReserve + 2 * room_for(kBatch);
@@ -93,7 +94,8 @@ class Stream {
            (kQuery == Query::closest && count <= kMaxDiverging && count * kDivergingShare <= of);
   }
 
-  // `of` is the number of traversals in the parent node. `room` is the first free element of room_.
+  // Runs the traversals in `ids` through the subtree `at`. `of` is the number of traversals in the parent
+  // node. `room` is the first free element of room_.
   void visit(Child at, const std::int32_t* ids, int count, int of, std::int32_t* room) {
     if (WideTree<T>::is_leaf(at)) {
       meet(at, ids, count);
@@ -121,12 +123,13 @@ class Stream {
     flush();
   }
 
-  // Child that a traversal enters, and the entry distance.
+  // Child that a traversal will visit, and its entry distance.
   struct StackEntry {
     T near;
     Child child;
   };
-  // Traversal that continues alone. For Query::closest its stack is ordered by distance.
+  // Traversal that continues alone. For Query::closest, the children of each node are on the stack from far
+  // to near.
   struct SingleTraversal {
     std::int32_t id;
     Child at;
@@ -134,8 +137,8 @@ class Stream {
     std::array<StackEntry, (kDeepestTree + 1) * kLists> stack;
   };
 
-  // Runs each traversal through a subtree separately. If the tree is larger than kNear, up to kInterleaved of
-  // them alternate.
+  // Runs each traversal through a subtree separately. If the tree is larger than kNear, up to kInterleaved
+  // traversals alternate.
   void walk(Child root, const std::int32_t* ids, int count) {
     const auto begin = [&](SingleTraversal& walker, std::int32_t id) {
       walker.id = id;
@@ -207,8 +210,8 @@ class Stream {
     }
   }
 
-  // Tests the traversals against the children of a node. Makes one list per child that a traversal enters.
-  // Stores the list elements at `room` and advances it. Returns the number of lists.
+  // Tests the traversals against the children of a node. Makes one list for each child that at least one
+  // traversal enters. Stores the list elements at `room` and advances `room`. Returns the number of lists.
   std::size_t enter(const typename WideTree<T>::Node& node, const std::int32_t* ids, int count,
                     std::int32_t*& room, Lists& lists) {
     Lanes<T> nearest(std::numeric_limits<T>::infinity());
@@ -256,7 +259,7 @@ class Stream {
     return static_cast<int>(end - to);
   }
 
-  // Queues tests of the traversals against a block.
+  // Queues tests of the traversals against the block of a leaf. flush() runs the queued tests.
   void meet(Child leaf, const std::int32_t* ids, int count) {
     if (met_ > 0 && Blocks<T>::pack_number(leaf) != Blocks<T>::pack_number(leaf_)) flush();
     leaf_ = leaf;
@@ -286,7 +289,7 @@ class Stream {
   AcceleratorCounts& counts_;
   const bool far_;
   std::array<SingleTraversal, static_cast<std::size_t>(kInterleaved)> single_traversals_;
-  Child leaf_ = 0;  // a block of the pack that pairs_ refer to
+  Child leaf_ = 0;  // any block of the pack to which the blocks of pairs_ belong
   std::size_t met_ = 0;
   std::array<RayBlockPair, 1024> pairs_;
   alignas(64) std::array<std::int32_t, kRoom> room_;

@@ -4,7 +4,7 @@
 
 namespace orrery {
 
-// Unbounded primitives (planes, infinite cylinders). They fit in no box, so every ray tests all of them.
+// Unbounded primitives (planes, infinite cylinders). They have no finite box, so every ray tests all of them.
 template <class T>
 class Unbounded {
  public:

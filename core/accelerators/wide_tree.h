@@ -11,8 +11,7 @@
 
 namespace orrery {
 
-// Bounding volume hierarchy with as many children per node as a register has lanes, over primitives packed in
-// blocks.
+// Bounding volume hierarchy over primitives packed in blocks. A node has up to one child per SIMD lane.
 template <class T>
 class WideTree {
  public:
@@ -22,7 +21,7 @@ class WideTree {
   static constexpr std::size_t kPlaces = static_cast<std::size_t>(kWidth<T>);
 
   struct Node {
-    BoxPlanes<T> planes;  // inverted in unused places, so that no ray enters
+    BoxPlanes<T> planes;  // lo > hi in unused places, so that no ray enters them
     std::array<Child, kPlaces> child;
 
     bool has(std::size_t place) const { return planes[0][place] <= planes[1][place]; }
@@ -69,10 +68,10 @@ class WideTree {
       if (primitive.bounds.bounded()) held += half_area(padded<T>(primitive.bounds));
     measure(held);
   }
-  // Returns the growth of the relative box area since the tree was built: the area of all boxes divided by
-  // that of the primitives' boxes. The expected number of boxes that a ray enters is proportional to it. The
-  // divisor is not the area of the root's box. A tree built while all primitives overlapped would otherwise
-  // seem good after they have moved apart.
+  // Returns the relative surface area divided by its value when the tree was built. The relative surface area
+  // is the total area of all boxes of the tree, divided by the total area of the primitives' boxes. A growing
+  // value means that rays enter more boxes. The divisor is not the area of the root's box, because a tree
+  // built while all primitives overlapped would then seem good after they have moved apart.
   double surface_area_growth() const { return relative_surface_area_ / relative_surface_area_as_built_; }
 
   bool empty() const { return blocks_.empty(); }
@@ -89,7 +88,7 @@ class WideTree {
       prefetch_lines(nodes_[child]);
   }
   const Bounds<T>& box() const { return box_; }
-  // Returns the longest side of a leaf box, averaged over all leaves.
+  // Returns the length of the longest side of a leaf box, averaged over all leaves.
   T mean_leaf_extent() const { return mean_leaf_extent_; }
   static bool is_leaf(Child child) { return (child & kLeaf) != 0; }
 
@@ -116,8 +115,8 @@ class WideTree {
     return static_cast<Child>(me);
   }
 
-  // Children of a wide node, found by repeatedly replacing the largest inner node of the binary tree with its
-  // children.
+  // Children of a wide node. children_of() starts with both children of the binary node. It repeatedly
+  // replaces the inner node of the largest area with the two children of that node.
   struct Children {
     std::array<std::uint32_t, kPlaces> node;
     std::array<T, kPlaces> area;  // half area of an inner node; -1 for a leaf
@@ -152,7 +151,8 @@ class WideTree {
     return kLeaf | blocks_.add(primitives, std::span(places).first(count));
   }
 
-  // `held` is the summed half area of the primitives' boxes.
+  // Computes relative_surface_area_ and mean_leaf_extent_. `held` is the total half area of the primitives'
+  // boxes.
   void measure(double held) {
     interruption_point();
     double area = 0, sides = 0;
@@ -175,8 +175,7 @@ class WideTree {
   int depth_ = 0;
   Bounds<T> box_;
   T mean_leaf_extent_ = 0;
-  double relative_surface_area_ = 1,
-         relative_surface_area_as_built_ = 1;  // half area of all boxes / half area of the primitives' boxes
+  double relative_surface_area_ = 1, relative_surface_area_as_built_ = 1;  // see surface_area_growth()
   std::vector<Node> nodes_;
   Blocks<T> blocks_;
 };

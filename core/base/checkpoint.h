@@ -5,7 +5,7 @@
 
 namespace orrery {
 
-// Time slice of a task on a thread for which other tasks may be waiting.
+// Time slice of a task that runs on a thread for which other tasks may be waiting.
 class TimeSlice {
  public:
   // Blocks until the task may continue. Returns at once if the time slice is not used up or no other task is
@@ -16,7 +16,8 @@ class TimeSlice {
   ~TimeSlice() = default;
 };
 
-// Cancellation and scheduling check. Long computations call may_continue() every few milliseconds.
+// Cancellation and scheduling check. Long computations call may_continue() every few milliseconds and stop
+// when it returns false.
 class Checkpoint {
  public:
   Checkpoint() = default;

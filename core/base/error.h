@@ -5,9 +5,12 @@
 #include <string>
 #include <vector>
 
-// Exceptions of the core. The server and the command line map each class to an HTTP status or to an exit code
-// with one line of text. A std::logic_error or std::bad_alloc that escapes the core is a bug or a machine
-// limit.
+// core/base: exceptions, cancellation, memory accounts, parallel loops, hashes and text helpers. Functions
+// are thread-safe unless a comment states otherwise.
+//
+// Exceptions of the core. The server maps each class to an HTTP status, the command line to an exit code and
+// one line of text. A std::logic_error that escapes the core is a bug. A std::bad_alloc means that the
+// machine or the memory account of the task is out of memory.
 
 namespace orrery {
 
@@ -26,13 +29,13 @@ class Error : public std::runtime_error {
 };
 
 // Invalid input: wrong type, out of range, unknown name or contradictory values. what() returns the first
-// problem with its place and the number of further ones.
+// problem with its place, and the number of further problems.
 class InputError : public Error {
  public:
   // Maximum number of stored problems. It bounds the memory that an invalid document can use.
   static constexpr std::size_t kMaxProblems = 20;
-  // Maximum characters of a pointer and of a detail; longer ones are shortened. Callers already shorten
-  // names, values and lists far below this limit.
+  // Maximum number of characters of a pointer and of a detail. Longer texts are shortened. Callers already
+  // shorten names, values and lists to far less.
   static constexpr std::size_t kMaxCharacters = 2048;
 
   // REQUIRES: problems is not empty. Drops problems past kMaxProblems.
@@ -45,7 +48,7 @@ class InputError : public Error {
   std::vector<Problem> problems_;
 };
 
-// Text that is not JSON. Its only problem has the pointer of the innermost value that was being parsed.
+// Text that is not JSON. The only problem has the pointer of the innermost value that was being parsed.
 class MalformedJson : public InputError {
  public:
   // `offset` counts bytes from 0. `line` and `column` count from 1, columns in characters.

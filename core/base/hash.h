@@ -17,7 +17,7 @@ bool is_sha256_hex(std::string_view text);
 // Returns the HMAC-SHA-256 (RFC 2104) of the bytes as 64 lower-case hexadecimal digits. Thread-safe.
 std::string hmac_sha256_hex(std::string_view key, std::string_view bytes);
 
-// Compares two strings. The time depends on their lengths only, not on their bytes.
+// Returns whether two strings are equal. The time depends only on their lengths, not on their bytes.
 bool equal_in_constant_time(std::string_view a, std::string_view b);
 
 }  // namespace orrery

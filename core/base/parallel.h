@@ -10,7 +10,7 @@
 #include <sanitizer/tsan_interface.h>
 
 #include <algorithm>
-#define ORRERY_UNSEEN __attribute__((no_sanitize_thread))  // hides worker code before TsanFence::acquire()
+#define ORRERY_UNSEEN __attribute__((no_sanitize_thread))  // for worker code before TsanFence::acquire()
 #else
 #define ORRERY_UNSEEN
 #endif
@@ -19,7 +19,7 @@
 namespace orrery {
 
 // Reports the synchronization between caller and workers to ThreadSanitizer, which cannot see inside oneTBB.
-// Does nothing in other builds, because oneTBB already synchronizes them.
+// Does nothing in other builds: oneTBB synchronizes caller and workers.
 class TsanFence {
  public:
 #ifdef __SANITIZE_THREAD__
@@ -33,7 +33,7 @@ class TsanFence {
 
 // Calls act(0), ..., act(count - 1) in any order and concurrently, in chunks of at least `grain` / 2 calls.
 // Each chunk starts with an interruption point. Once a call throws, no more chunks start. One of the
-// exceptions is rethrown here after the running chunks have ended.
+// exceptions is rethrown to the caller after the running chunks have ended.
 template <class Act>
 void parallel_for_each(std::size_t count, std::size_t grain, const Act& act) {
   using Range = tbb::blocked_range<std::size_t>;
@@ -53,8 +53,8 @@ void parallel_for_each(std::size_t count, std::size_t grain, const Act& act) {
   from_workers.acquire();
 }
 
-// Calls both functions, on two threads if available. If one throws, the other may not start. One exception is
-// rethrown here after the running function has ended.
+// Calls both functions, on two threads if available. If one function throws, the other function may not
+// start. One exception is rethrown to the caller after both functions have ended.
 template <class First, class Second>
 void both_in_parallel(const First& first, const Second& second) {
   TsanFence to_workers, from_workers;
@@ -70,7 +70,7 @@ void both_in_parallel(const First& first, const Second& second) {
   from_workers.acquire();
 }
 
-// Sorts by operator<, which must not throw. Neither stable nor interruptible.
+// Sorts by operator<, which must not throw. The sort is neither stable nor interruptible.
 template <class Iterator>
 void sort_in_parallel(Iterator begin, Iterator end) {
 #ifdef __SANITIZE_THREAD__

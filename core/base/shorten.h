@@ -17,8 +17,8 @@ inline std::size_t character_count(std::string_view text) {
       std::count_if(text.begin(), text.end(), [](char c) { return !continues_character(c); }));
 }
 
-// Returns the first `characters` characters of valid UTF-8, or all of them if there are fewer. Reads no byte
-// past the first character left out.
+// Returns the first `characters` characters of valid UTF-8, or all characters if there are fewer. Reads at
+// most one byte past the returned text.
 inline std::string_view first_characters(std::string_view text, std::size_t characters) {
   for (std::size_t i = 0; i < text.size(); ++i)
     if (!continues_character(text[i]) && characters-- == 0) return text.substr(0, i);
@@ -32,11 +32,12 @@ inline std::string grouped(std::uint64_t number) {
   return text;
 }
 
-// Maximum characters of a name quoted in an error message.
+// Maximum number of characters of a name that an error message quotes.
 inline constexpr std::size_t kMaxNameCharacters = 128;
 
-// Returns the text. If it is longer than `characters`, returns its start, an ellipsis and the original
-// length: "aaaa... (8000000 characters)". Never builds a string longer than the result.
+// Returns the text if it has at most `characters` characters. Otherwise returns the first `characters`, an
+// ellipsis and the original length: "aaaa... (8000000 characters)". Never builds a string longer than the
+// result.
 inline std::string shortened(std::string_view text, std::size_t characters = kMaxNameCharacters) {
   const std::string_view first = first_characters(text, characters);
   if (first.size() == text.size()) return std::string(text);

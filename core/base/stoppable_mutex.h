@@ -6,12 +6,13 @@
 
 namespace orrery {
 
-// Mutex for long critical sections whose waiters can be cancelled. Meets BasicLockable.
+// Mutex for long critical sections. Waiting threads can be cancelled. Meets BasicLockable.
 class StoppableMutex {
  public:
   void lock() { lock_unless({}); }
 
-  // Locks the mutex. Returns false if a stop is requested while another thread holds it.
+  // Locks the mutex and returns true. Returns false if a stop is requested while another thread holds the
+  // mutex.
   bool lock_unless(const std::stop_token& stop) {
     std::unique_lock guard(mutex_);
     if (!changed_.wait(guard, stop, [&] { return !held_; })) return false;

@@ -8,7 +8,8 @@
 namespace orrery {
 namespace {
 
-// Avoids a call per access; valid because this library is loaded at program start.
+// The initial-exec model avoids a function call per access. It is valid because this library is loaded at
+// program start.
 [[gnu::tls_model("initial-exec")]] constinit thread_local TaskContext current_task;
 
 #ifndef ORRERY_SANITIZED  // sanitizers replace operator new themselves
@@ -21,7 +22,7 @@ struct alignas(__STDCPP_DEFAULT_NEW_ALIGNMENT__) Header {
 // Large blocks start on a cache line, as the allocator's own large blocks do. Arrays of nodes then straddle
 // as few lines as possible.
 constexpr std::size_t kCacheLine = 64, kLargeBlock = 4096;
-constexpr std::size_t kOnCacheLine = 1;  // flag in Header::bytes, whose values are even
+constexpr std::size_t kOnCacheLine = 1;  // flag in Header::bytes; sizes are even
 
 // Returns the distance from the allocator's pointer to the block, in bytes.
 std::size_t offset_of(std::size_t alignment) { return std::max(sizeof(Header), alignment); }
@@ -75,7 +76,7 @@ void MemoryAccount::close() {
 }
 
 void MemoryAccount::add(std::size_t bytes) {
-  // Larger than the allocation in nlohmann::json's destructor for the largest allowed document. That
+  // Larger than any allocation in nlohmann::json's destructor for the largest allowed document, because a
   // destructor must not throw.
   constexpr std::size_t kLarge = 32 << 20;
   if (held_.fetch_add(bytes) + bytes <= granted_ + kOpen) return;
@@ -93,7 +94,7 @@ void MemoryAccount::remove(std::size_t bytes) {
   if (held_.fetch_sub(bytes) == bytes) delete this;
 }
 
-// Returns false if the resize was refused.
+// Requests a higher limit for the bytes in use. Returns false if the request was refused.
 bool MemoryAccount::grow() {
   const TaskScope nobody({});
   const std::lock_guard lock(mutex_);

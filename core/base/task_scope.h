@@ -15,13 +15,13 @@
 namespace orrery {
 
 // Memory account of one task. operator new charges the account of the current TaskScope. operator delete
-// credits the account that was charged, on any thread. A block that outlives its account no longer counts
-// toward a limit. Thread-safe.
+// credits the account that was charged for the block, on any thread. A block that outlives its account no
+// longer counts toward a limit. Thread-safe.
 class MemoryAccount : public std::enable_shared_from_this<MemoryAccount> {
  public:
   // Callback that changes the limit of the account to at least `bytes`, which may be more or less than
-  // before. Returns the new limit. Throws if it refuses. Does not throw if `already` is true, because the
-  // bytes are then allocated already.
+  // before. Returns the new limit, or throws an exception to refuse. Must not throw if `already` is true,
+  // because the bytes are then already allocated.
   using Resize = std::function<std::size_t(std::size_t bytes, bool already)>;
   // Factory of resize callbacks. Called once per account, including accounts from open_another(). The account
   // closes when its last shared_ptr is destroyed.
@@ -30,19 +30,21 @@ class MemoryAccount : public std::enable_shared_from_this<MemoryAccount> {
   std::shared_ptr<MemoryAccount> open_another() const { return open(source_); }  // uses the same source
   MemoryAccount(const MemoryAccount&) = delete;
 
-  std::size_t bytes() const { return held_ - kOpen; }  // includes the header and the rounding of each block
+  // Returns the charged bytes, including the header and the rounding of each block.
+  std::size_t bytes() const { return held_ - kOpen; }
 
   // Excludes `bytes` of the account from its limit, because another owner is charged for them.
   void settle(std::size_t bytes);
 
-  // Calls work() with this account, `stop` and the current time slice as the thread's TaskScope. If work()
-  // throws std::bad_alloc because the account was refused memory, throws the exception of the refusal
-  // instead.
+  // Returns work(), called with this account, `stop` and the current time slice as the thread's TaskScope. If
+  // work() throws std::bad_alloc because a Resize callback refused memory, throws the exception of that
+  // callback instead.
   template <class Act>
   auto run(const std::stop_token& stop, const Act& work);
 
-  // Throws std::bad_alloc if a block of 32 MiB or more exceeds the limit. Smaller blocks always succeed, so
-  // that code without error handling does not fail; require_granted() throws afterwards.
+  // Charges a block. Throws std::bad_alloc if the block has 32 MiB or more and exceeds the limit, unless an
+  // exception is propagating. All other charges succeed, so that code without error handling does not fail.
+  // If they exceed the limit, require_granted() throws std::bad_alloc.
   void add(std::size_t bytes);
   void remove(std::size_t bytes);
   void require_granted() {
@@ -50,7 +52,7 @@ class MemoryAccount : public std::enable_shared_from_this<MemoryAccount> {
   }
 
  private:
-  static constexpr std::size_t kOpen = 1;  // counted in held_ while open; block sizes are even
+  static constexpr std::size_t kOpen = 1;  // counted in held_ while the account is open; block sizes are even
 
   explicit MemoryAccount(Source source) : source_(std::move(source)), resize_(source_()) {}
   void close();
@@ -71,11 +73,11 @@ class MemoryAccount : public std::enable_shared_from_this<MemoryAccount> {
 struct TaskContext {
   MemoryAccount* memory = nullptr;        // account charged for allocations
   const std::stop_token* stop = nullptr;  // cancels the task
-  TimeSlice* time_slice = nullptr;        // time slice of the task; called from any thread
+  TimeSlice* time_slice = nullptr;        // time slice of the task; any thread may call yield()
 };
 
-// Sets the calling thread's context until the end of the scope. Parallel helpers that the caller waits for
-// inherit it.
+// Sets the calling thread's context until the end of the scope. parallel_for_each() and both_in_parallel()
+// pass the context to their workers.
 class TaskScope {
  public:
   explicit TaskScope(const TaskContext& work);
@@ -92,7 +94,7 @@ class TaskScope {
 class MemoryCharge {
  public:
   MemoryCharge() = default;
-  // Charges the current account, if there is one. Throws std::bad_alloc.
+  // Charges the account of the current TaskScope, if any. Throws like MemoryAccount::add().
   explicit MemoryCharge(std::size_t bytes);
   ~MemoryCharge();
   MemoryCharge(MemoryCharge&& from) noexcept
@@ -121,9 +123,10 @@ auto MemoryAccount::run(const std::stop_token& stop, const Act& work) {
 
 // Yields to waiting tasks if the time slice is used up. Throws Cancelled if a stop was requested, and
 // std::bad_alloc if the task exceeds its memory limit. Takes a few ns, so loops over input of any size call
-// it at each step. REQUIRES: the caller holds no lock that other tasks need.
+// it at each step. REQUIRES: if the TaskScope has a time slice, the caller holds no lock that other tasks
+// need.
 void interruption_point();
-// Calls interruption_point() at every 4,096th step, for loops with short steps.
+// Calls interruption_point() if `step` is a multiple of 4,096, for loops with short steps.
 inline void interruption_point(std::size_t step) {
   if (step % 4096 == 0) interruption_point();
 }

@@ -6,15 +6,16 @@
 
 namespace orrery {
 
-// Base of cameras that implement one template:
-//   Ray<N> ray(const CameraView<N>& view, const N& sx, const N& sy) const;
-// It returns the ray through the image point that is sx to the right of the image centre and sy above it. In
-// these units, half the image height is CameraFrame::half_extent.
+// Camera position and axes, as scalars or lanes.
 template <class N>
 struct CameraView {
   Vec3<N> eye, right, up, forward;
 };
 
+// Base of cameras that implement one template:
+//   Ray<N> ray(const CameraView<N>& view, const N& sx, const N& sy) const;
+// It returns the ray through the image point that is sx to the right of the image centre and sy above the
+// centre. The unit of sx and sy is such that half the image height is CameraFrame::half_extent.
 template <class Derived>
 class CameraOf : public Camera {
  public:
@@ -32,7 +33,7 @@ class CameraOf : public Camera {
   void fill(const CameraFrame& frame, int width, int height, const TileView& tile, const TileSamples& samples,
             RayBatch<T>& out) const {
     using N = Lanes<T>;
-    const T scale = static_cast<T>(frame.half_extent / height);  // half a pixel, in x and y
+    const T scale = static_cast<T>(frame.half_extent / height);  // half a pixel, in the unit of sx and sy
     const CameraView<N> view{Vec3<N>(Vec3<T>(frame.eye)), Vec3<N>(Vec3<T>(frame.right)),
                              Vec3<N>(Vec3<T>(frame.up)), Vec3<N>(Vec3<T>(-frame.back))};
     const Pixels& pixels = slot_pixels();
@@ -40,7 +41,7 @@ class CameraOf : public Camera {
     for (int i = 0; i < kBatch; i += kWidth<T>) {
       const N in_x = lanes(pixels.x, i), in_y = lanes(pixels.y, i);
       const N px = in_x + T(tile.x0), py = in_y + T(tile.y0);
-      // Exact for pixel centres, so mirrored pixels have coordinates of equal magnitude.
+      // Exact for pixel centres, so pixels that mirror each other have coordinates of equal magnitude.
       const N sx = (T(2) * (px + lanes(samples.u, i)) - T(width)) * scale;
       const N sy = (T(height) - T(2) * (py + lanes(samples.v, i))) * scale;
       const Ray<N> ray = static_cast<const Derived*>(this)->ray(view, sx, sy);

@@ -7,16 +7,16 @@
 namespace orrery {
 namespace {
 
-// Equirectangular camera: rows are latitudes, columns longitudes, evenly spaced. The image height covers 180
-// degrees. An image twice as wide as high shows every direction once; a wider one repeats directions.
+// Equirectangular camera: rows are evenly spaced latitudes, columns evenly spaced longitudes. The image
+// height covers 180 degrees. An image twice as wide as high shows every direction once. A wider image repeats
+// directions.
 class Panorama final : public CameraOf<Panorama> {
  public:
   const char* type() const override { return "panorama"; }
   std::vector<Parameter> parameters() const override { return {}; }
   bool parallel() const override { return false; }
   bool all_around() const override { return true; }
-  // In radians.
-  double half_extent(double) const override { return std::numbers::pi / 2; }
+  double half_extent(double) const override { return std::numbers::pi / 2; }  // radians
 
   template <class N>
   Ray<N> ray(const CameraView<N>& view, const N& sx, const N& sy) const {

@@ -24,7 +24,7 @@ class Perspective final : public CameraOf<Perspective> {
   }
 
  private:
-  double fov_degrees_;  // vertical
+  double fov_degrees_;  // vertical field of view
 };
 
 std::unique_ptr<Camera> read(Params& p) {

@@ -85,15 +85,16 @@ PixelFilter::PixelFilter(Filter filter, double width)
   negative_ = 2 * above_.mass * below_.mass;
 }
 
-// Returns an offset from the pixel's corner, in pixels.
+// Returns the coordinate of a sample relative to the pixel's corner, in pixels, for a uniform u in [0, 1).
 float PixelFilter::offset(const Lobes& lobes, float u) const {
   const float signed_share = 2 * u - 1;
   const float share = lobes.at(std::min(std::abs(signed_share), 1 - 0x1p-24f));
   return 0.5f + std::copysign(share, signed_share) * static_cast<float>(half_width_);
 }
 
-// The lobes of x and y have the same sign in the positive part and different signs in the negative part. u
-// selects one of the two cases and is rescaled to [0, 1).
+// In the positive part, the lobes of x and y have the same sign. In the negative part, they have different
+// signs. Each part has two cases, distinguished by the sign of the lobe of x. u selects the case and is
+// rescaled to [0, 1).
 void PixelFilter::place(Part part, TileSamples& samples) const {
   const bool alike = part == Part::positive;
   const float first =

@@ -9,8 +9,8 @@ namespace orrery {
 
 // Pixel filter by importance sampling: the sample density follows the filter, so each sample belongs to one
 // pixel and all weights are equal (Ernst, Stamminger, Greiner, "Filter Importance Sampling", RT 2006). A
-// filter f(x) f(y) with negative lobes is the difference of two positive parts with separate samples, so
-// constant images stay constant. The filter is tabulated in kCells steps from centre to edge.
+// filter f(x) f(y) with negative lobes is the difference of two positive parts. Each part has its own
+// samples, so constant images stay constant. The filter is tabulated in kCells steps from centre to edge.
 class PixelFilter {
  public:
   // `width` is in pixels, from edge to edge. 0 selects the default: box 1, gaussian 3 (six standard

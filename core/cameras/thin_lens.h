@@ -26,8 +26,8 @@ class LensShape {
     }
   }
 
-  // In a polygon, u selects the triangle between the centre and one side, and the distance from the centre. v
-  // is the position along the side.
+  // Returns the point for uniform u and v in [0, 1). In a polygon, u selects the triangle between the centre
+  // and one side, and the distance from the centre. v is the position along the side.
   [[gnu::always_inline]] Point at(const SamplePoint<N>& sample) const {
     using std::sqrt;
     if (blades_ == 0) {
@@ -54,9 +54,9 @@ class LensShape {
   std::array<T, kMaxBlades + 1> right_, up_;  // corner coordinates, the first corner repeated at the end
 };
 
-// Moves ray origins from the eye to points of a thin lens and aims the rays at their points in the plane of
-// focus (Cook, Porter, Carpenter, "Distributed Ray Tracing", SIGGRAPH 1984). REQUIRES: the frame's aperture
-// is not 0.
+// Moves the origin of each camera ray to a point of a thin lens. Aims the ray at the point where the original
+// ray crosses the plane of focus (Cook, Porter, Carpenter, "Distributed Ray Tracing", SIGGRAPH 1984).
+// REQUIRES: the camera is not an all-around camera.
 template <class T>
 void apply_thin_lens(const CameraFrame& frame, const Draws& draws, SampleSet set, RayBatch<T>& rays) {
   using N = Lanes<T>;

@@ -4,11 +4,12 @@
 #include "core/model/record.h"
 
 // Environments given by a formula. Each type is one record, `template <class N> struct Gradient`, with
-//   static Gradient<double> read(Params&);               in the .cpp, which registers the type
+//   static Gradient<double> read(Params&);               in the .cpp that registers the type
 //   Vec3<N> radiance(const Vec3<N>& direction) const;    for a unit direction from the scene
 //   Vec3<N> most() const;                                maximum radiance per channel
-// `read_formula<Gradient>` is its factory. Formulas are not light-sampled: their radiance varies so little
-// that BSDF sampling suffices.
+//   Vec3d constant() const;                              optional: the radiance of all directions
+// `read_formula<Gradient>` is the factory of the type. Formulas are not light-sampled: their radiance varies
+// so little that BSDF sampling suffices.
 namespace orrery {
 
 template <template <class> class Record, class T>

@@ -63,9 +63,9 @@ class ImageKernel final : public LightKernel<T> {
  private:
   struct Found {
     Vec3<N> radiance;
-    N pdf;  // per solid angle
+    N pdf;  // per solid angle, of LightMap::draw()
   };
-  // `sine` is the sine of the angle from +y.
+  // Returns the radiance and the density at a place. `sine` is the sine of the angle from +y.
   Found find(const LightMap::Place<N>& place, const N& sine) const {
     Found found;
     N by_texel;

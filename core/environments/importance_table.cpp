@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kNumbers = 0x1p24;
 
-// Appends the CDF of the weights in units of 2^-24. REQUIRES: `sum` is their sum, added in this order, so
-// that the last nonzero weight ends at exactly 2^24. If all weights are 0, `sum` is any positive number.
+// Appends the CDF of the weights in units of 2^-24. REQUIRES: `sum` is the sum of the weights, added in this
+// order, so that the CDF ends at exactly 2^24. If all weights are 0, `sum` is any positive number.
 template <class Weights>
 void append_ends(const Weights& weights, double sum, std::vector<std::uint32_t>& ends) {
   double end = 0;

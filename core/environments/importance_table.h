@@ -6,12 +6,11 @@
 
 namespace orrery {
 
-// Discrete 2D distribution over grid cells: samples a row, then a column in it. Probabilities of a row and of
-// a column in it are multiples of 2^-24, the resolution of the random numbers. They therefore match the
-// sampling exactly.
+// Discrete 2D distribution over grid cells. draw() selects a row, then a column of that row. Both
+// probabilities are multiples of 2^-24, the resolution of the random numbers, so probability() is exact.
 class ImportanceTable {
  public:
-  // `weights` are row-major and >= 0. The table is empty if all are 0.
+  // `weights` are row-major and >= 0. The table is empty if all weights are 0. Throws Cancelled.
   ImportanceTable(int width, int height, std::span<const float> weights);
 
   bool empty() const { return column_ends_.empty(); }
@@ -21,7 +20,8 @@ class ImportanceTable {
   struct Cell {
     int column, row;
   };
-  // Returns the cell selected by u and v in [0, 1), multiples of 2^-24. REQUIRES: !empty().
+  // Returns the cell that v (row) and u (column) select. Both are in [0, 1) and multiples of 2^-24. REQUIRES:
+  // !empty().
   Cell draw(double u, double v) const;
   double probability(const Cell& cell) const;
 

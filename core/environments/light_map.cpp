@@ -11,11 +11,11 @@ double luminance(const float* rgb) {  // ITU-R BT.709
   return 0.2126 * double{rgb[0]} + 0.7152 * double{rgb[1]} + 0.0722 * double{rgb[2]};
 }
 
-// Returns the sine of the angle from +y at the middle of a row.
+// Returns the sine of the angle from +y to the middle of a row.
 double sine_of(int row, int height) { return sine_cosine_turns((row + 0.5) / (2 * height)).sine; }
 
 std::vector<float> weights_of(const Texels& picture, LightMap::Weights weights) {
-  constexpr double kLeast = 1e-6;  // minimum share of the light above the mean; below it, light is uniform
+  constexpr double kLeast = 1e-6;  // up to this fraction of light above the mean, light counts as uniform
   const auto width = static_cast<std::size_t>(picture.width);
   double light = 0, sines = 0;
   const auto for_each_row = [&](const auto& visit) {

@@ -15,8 +15,9 @@ namespace orrery {
 // Equirectangular radiance map. Its centre is toward -z, its top toward +y, its right half toward +x.
 // Radiance is interpolated bilinearly between texel centres.
 //
-// The sampling density is interpolated bilinearly between the same centres: draw() samples a texel by its
-// weight, then a point of its tent filter. Weights are luminance times the sine of the angle from +y.
+// The sampling density is interpolated bilinearly between the same centres: draw() selects a texel with a
+// probability proportional to its weight, then a point of the texel's tent filter. Weights are luminance
+// times the sine of the angle from +y.
 class LightMap {
  public:
   // Texel weights. `compensated` subtracts the mean luminance over all directions and clamps at 0, because
@@ -25,7 +26,7 @@ class LightMap {
   enum class Weights { plain, compensated };
   explicit LightMap(const Texels& picture, Weights weights = Weights::compensated);
 
-  // Returns whether any texel has a positive weight. False for uniform light.
+  // Returns whether any texel has a positive weight. With compensated weights, false for uniform light.
   bool sampled() const { return !table_.empty(); }
 
   // Map coordinates of a direction, in texels from the left and from the top.
@@ -56,7 +57,7 @@ class LightMap {
     return {{down.sine * across.sine, down.cosine, -down.sine * across.cosine}, down.sine};
   }
 
-  // Radiance at a place and the sampling density of draw() there.
+  // Radiance at a place, and the sampling density of draw() at the place.
   template <class T>
   struct Value {
     Vec3<T> radiance;
@@ -69,8 +70,8 @@ class LightMap {
     return table_.width() * (table_.height() / (2 * std::numbers::pi * std::numbers::pi));
   }
 
-  // Samples a place: u and v select a texel, `along` and `down` a point of its tent. All are in [0, 1),
-  // multiples of 2^-24. REQUIRES: sampled().
+  // Samples a place: u and v select a texel, `along` and `down` a point of its tent. All four are in [0, 1),
+  // and u and v are multiples of 2^-24. REQUIRES: sampled().
   template <class T>
   Place<T> draw(T u, T v, T along, T down) const;
 
@@ -118,7 +119,7 @@ LightMap::Place<T> LightMap::draw(T u, T v, T along, T down) const {
   const T width = T(table_.width()), height = T(table_.height());
   T x = T(cell.column) + T(0.5) + tent(along), y = T(cell.row) + T(0.5) + tent(down);
   x = x < 0 ? x + width : x >= width ? x - width : x;
-  y = y < 0 ? -y : y > height ? 2 * height - y : y;  // tents at the poles extend beyond the map
+  y = y < 0 ? -y : y > height ? 2 * height - y : y;  // tents at the poles are reflected back into the map
   return {x, y};
 }
 

@@ -5,7 +5,7 @@
 #include "core/image/files.h"
 
 // Shared helpers of the image codecs. Decoders check the size in the header before they decode the pixels.
-// They throw InputError.
+// They throw InputError if the image is damaged or too large.
 namespace orrery {
 
 Image decode_png(std::span<const std::byte> bytes, std::size_t max_pixels);

@@ -75,7 +75,7 @@ std::string encode_exr(const Image& image, std::span<const ExrLayer> layers) {
   {
     Imf::OutputFile file(stream, header, 0);
     Imf::FrameBuffer frame =
-        frame_of(const_cast<std::byte*>(image.bytes().data()), image.width());  // only read
+        frame_of(const_cast<std::byte*>(image.bytes().data()), image.width());  // the encoder only reads it
     for (const ExrLayer& layer : layers)
       frame.insert(layer.name,
                    Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(const_cast<float*>(layer.values.data())),

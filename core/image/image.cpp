@@ -34,7 +34,7 @@ Image::Image(int width, int height, PixelFormat format) : width_(width), height_
   data_.reset(static_cast<std::byte*>(std::aligned_alloc(alignment, rounded)));
   if (!data_) throw std::bad_alloc();
   if (alignment == kHugePage)
-    madvise(data_.get(), rounded, MADV_HUGEPAGE);  // fewer page faults; may be refused
+    madvise(data_.get(), rounded, MADV_HUGEPAGE);  // reduces page faults; failure is harmless
 }
 
 void Image::set_row(int x, int y, int count, const float* red, const float* green, const float* blue) {
@@ -54,7 +54,7 @@ void Image::set_row(int x, int y, int count, const float* red, const float* gree
                        srgb_codes(load(blue + from)) << 16;
     codes.copy_to(pixels.data(), stdx::vector_aligned);
     const auto lanes = static_cast<std::size_t>(std::min(kLanes, count - from));
-    // All stores but the last write one byte too many; the next pixel overwrites it.
+    // Each store but the last writes a fourth byte, which the next pixel overwrites.
     for (std::size_t i = 0; i + 1 < lanes; ++i, out += 3) std::memcpy(out, &pixels[i], 4);
     std::memcpy(out, &pixels[lanes - 1], 3);
     out += 3;

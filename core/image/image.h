@@ -8,24 +8,28 @@
 #include "core/base/task_scope.h"
 #include "core/math/vec3.h"
 
+// core/image: images in memory, and PNG, JPEG and EXR codecs (files.h).
+//
+// Threads: functions are thread-safe. An Image may be used by several threads if each writes different
+// pixels. Errors: std::bad_alloc. files.h lists the errors of the codecs.
 namespace orrery {
 
 enum class PixelFormat {
-  srgb8,    // 3 bytes per pixel, sRGB-encoded (IEC 61966-2-1), clamped to 1
+  srgb8,    // 3 bytes per pixel, sRGB-encoded (IEC 61966-2-1), clamped to [0, 1]
   linear32  // 3 floats per pixel, linear, unbounded
 };
 
 // Image with row 0 at the top. Threads may write different pixels concurrently.
 class Image {
  public:
-  // Does not initialise the pixels. Throws std::bad_alloc.
+  // Leaves the pixels uninitialised. Throws std::bad_alloc.
   Image(int width, int height, PixelFormat format);
 
   int width() const { return width_; }
   int height() const { return height_; }
   PixelFormat format() const { return format_; }
 
-  // Sets pixels (x, y) .. (x + count - 1, y) from linear colour. The channel arrays must be aligned to 64
+  // Sets pixels (x, y) to (x + count - 1, y) from linear colour. The channel arrays must be aligned to 64
   // bytes and readable up to the next multiple of 16 entries.
   void set_row(int x, int y, int count, const float* red, const float* green, const float* blue);
 

@@ -10,10 +10,11 @@
 namespace orrery {
 namespace srgb {
 
+// Largest linear value of the linear segment.
 inline constexpr double kEndOfLine = 0.0031308;
 
-// Polynomial in x^(1/4) for 1.055 x^(1/2.4) - 0.055, x from kEndOfLine to 1. Interpolates at Chebyshev
-// points; the error is below 0.0006 / 255.
+// Polynomial in x^(1/4) that approximates 1.055 x^(1/2.4) - 0.055 for x from kEndOfLine to 1. It interpolates
+// at Chebyshev points. The error is below 0.0006 / 255.
 inline constexpr std::array kCurve = {-0.059739011f, 0.14195826f,  1.3545726f,  -0.82528002f,
                                       0.62100228f,   -0.29424764f, 0.061734308f};
 
@@ -31,7 +32,8 @@ template <class N>
 
 }  // namespace srgb
 
-// Encodes linear [0, 1] to sRGB [0, 1] within 3e-6. Clamps other values; NaN gives 0.
+// Encodes a linear value as sRGB in [0, 1], with an error below 3e-6. Clamps the linear value to [0, 1]. NaN
+// gives 0.
 template <class N>
 [[gnu::always_inline]] inline N encode_srgb(const N& linear) {
   using Scalar = ScalarOf<N>;

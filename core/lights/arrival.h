@@ -4,7 +4,7 @@
 
 namespace orrery {
 
-// Light that arrives at a surface point from a point light or one direction.
+// Light that arrives at a surface point from one point or one direction.
 template <class N>
 struct Arrival {
   Vec3<N> direction;  // unit, toward the light
@@ -23,7 +23,7 @@ struct LightSample {
 template <class N>
 struct DistantRadiance {
   Vec3<N> radiance;
-  N pdf;  // density of draw() in that direction
+  N pdf;  // per solid angle: density of draw() in that direction
 };
 
 }  // namespace orrery

@@ -7,8 +7,8 @@ namespace orrery {
 
 class Params;
 
-// Distance attenuation f(d) = min(1 / (c0 + c1 d + c2 d^2), most). In [0, 1] for d >= 0 if limited; for
-// physical falloff, `most` only keeps values finite.
+// Distance attenuation f(d) = min(1 / (c0 + c1 d + c2 d^2), most), d >= 0 in metres. With clamp_to_one,
+// `most` is 1. Otherwise it is 1e12 and only keeps values finite.
 template <class N>
 struct Attenuation {
   N c0, c1, c2, most;

@@ -9,8 +9,8 @@
 
 namespace orrery {
 
-// Infinitely distant light, parallel or from a disc in the sky. A white Lambert surface facing the disc has
-// radiance `intensity`.
+// Infinitely distant light, parallel or from a disc in the sky. A white Lambert surface that faces the light
+// has radiance `intensity`.
 template <class N>
 struct Directional {
   Vec3<N> from, intensity;
@@ -21,7 +21,8 @@ struct Directional {
 
   LightBounds bounds() const { return {.strength = max_component(intensity), .parallel = true}; }
 
-  Vec3d max_incident(double) const { return intensity * (2 / (2 - height)); }  // surface facing the disc
+  // Returns LightBatch::incident for draw(). It is at least the value for arrive().
+  Vec3d max_incident(double) const { return intensity * (2 / (2 - height)); }
 
   Vec3d max_radiance_at_infinity() const {
     return height > 0 ? intensity * (1 / (height * (2 - height))) : Vec3d(0);
@@ -29,7 +30,8 @@ struct Directional {
 
   Arrival<N> arrive(const Vec3<N>&) const { return {from, N(std::numeric_limits<T>::infinity()), intensity}; }
 
-  // Discs narrower than the rounding of directions count as parallel light.
+  // Returns whether the light is a disc. Discs narrower than the rounding of directions count as parallel
+  // light.
   MaskOf<N> extended() const {
     constexpr T kRounded = std::numeric_limits<T>::epsilon();
     return height > N(kRounded * kRounded);
@@ -45,7 +47,8 @@ struct Directional {
     return {{direction, N(std::numeric_limits<T>::infinity()), intensity * (T(2) / (T(2) - height))},
             density()};
   }
-  // Returns the disc's radiance and the density of draw(), both 0 outside the disc.
+  // Returns the radiance of the disc and the density of draw(). Both are 0 outside the disc and for parallel
+  // light.
   DistantRadiance<N> beyond(const Vec3<N>& direction) const {
     const Vec3<N> chord = direction - from;
     const auto inside = dot(chord, chord) <= T(2) * height && extended();

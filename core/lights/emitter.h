@@ -8,15 +8,17 @@
 
 namespace orrery {
 
-// Spherical rectangle: solid angle of a rectangle and uniform samples of it (Ureña, Fajardo, King, "An
-// Area-Preserving Parametrization for Spherical Rectangles", EGSR 2013). The solid angle is a sum of arc
-// sines, because the paper's arc cosines suffer from cancellation when a constant is subtracted.
+// Spherical rectangle: solid angle of a rectangle, and points of the rectangle that are uniform in solid
+// angle (Ureña, Fajardo, King, "An Area-Preserving Parametrization for Spherical Rectangles", EGSR 2013). The
+// solid angle is computed as a sum of arc sines, because the paper subtracts a constant from a sum of arc
+// cosines, which cancels digits.
 template <class N>
 class SphericalRectangle {
   using T = ScalarOf<N>;
 
  public:
-  // `from` points from the shading point to the corner. `a` and `b` are the unit vectors of the sides.
+  // `from` is the vector from the shading point to the corner. `a` and `b` are the unit vectors of the sides,
+  // `normal` is the unit normal.
   SphericalRectangle(const Vec3<N>& from, const Vec3<N>& a, const N& length_a, const Vec3<N>& b,
                      const N& length_b, const Vec3<N>& normal) {
     using std::abs;
@@ -36,10 +38,11 @@ class SphericalRectangle {
 
   const N& angle() const { return angle_; }  // steradians
 
-  // Distances along the two sides from the corner to the sample for u and v in [0, 1).
+  // Point of the rectangle: distances from the corner along both sides, in metres.
   struct Lengths {
     N along_a, along_b;
   };
+  // Returns a point for u and v in [0, 1). If u and v are uniform, the point is uniform in solid angle.
   Lengths draw(const N& u, const N& v) const {
     using std::sqrt;
     const N zero(T(0)), one(T(1));
@@ -70,20 +73,23 @@ class SphericalRectangle {
   N x0_, x1_, y0_, y1_, z0_, b0_, b1_, k_, angle_;
 };
 
-// Two-sided emitting surface, sampled from a shading point: rectangles and spheres by solid angle, triangles
-// and disks by area. SolidEmitter samples boxes and cylinders.
+// Two-sided emitting surface, sampled from a shading point. Rectangles and spheres are sampled by solid
+// angle. Triangles, disks, small rectangles, and spheres seen from inside are sampled by area. SolidEmitter
+// samples boxes and cylinders.
 template <class N>
 struct Emitter {
-  Vec3<N> at, a, b;  // see Patch; a and b are unit vectors for a rectangle or solid
-  Vec3<N> normal;    // unit; for a solid, the direction of Patch::c
+  Vec3<N> at, a, b;  // see Patch; a and b are unit vectors for a rectangle, box or cylinder
+  Vec3<N> normal;    // unit; for a box or cylinder, the direction of Patch::c
   Vec3<N> radiance;
   N length_a, length_b, length_c;  // lengths of the vectors in Patch
-  N kind, area, magnitude;
+  N kind, area, magnitude;         // Patch::Kind, square metres, largest absolute coordinate
 
   struct LightSample {
-    Vec3<N> point, normal;  // on the emitter; the normal may face either side
+    Vec3<N> point, normal;  // on the emitter; the unit normal may face either side
     N pdf;                  // per solid angle; 0 if no light arrives
   };
+  // Samples a point for uniform u and v in [0, 1). `from` is the shading point. Undefined for boxes and
+  // cylinders.
   LightSample draw(const Vec3<N>& from, const N& u, const N& v) const {
     const auto round = is(Patch::Kind::sphere);
     const LightSample flat = draw_flat(from, u, v);
@@ -97,10 +103,12 @@ struct Emitter {
 
   MaskOf<N> is_solid() const { return is(Patch::Kind::box) || is(Patch::Kind::cylinder); }
 
-  // Returns a rectangle's solid angle in steradians, or 0 if it is so small that draw() samples by area.
+  // Returns the solid angle of a rectangle in steradians, or 0 if the angle is so small that draw() samples
+  // by area.
   N angle(const Vec3<N>& from) const { return large_angle(spherical(from)); }
 
-  // Returns the density of draw() for the direction of a unit ray that hits the emitter at t.
+  // Returns the density of draw() per solid angle, for the direction of a unit ray that hits the emitter at
+  // t.
   N pdf(const Ray<N>& ray, const N& t) const {
     using std::abs;
     const auto round = is(Patch::Kind::sphere);
@@ -169,8 +177,8 @@ struct Emitter {
 
   // Cone of directions in which an outside point sees a sphere.
   struct Cone {
-    N height;   // 1 - cosine of the half angle, without cancellation; 0 from inside
-    N density;  // per solid angle
+    N height;   // 1 - cosine of the half angle, without cancellation; 0 if the point is inside
+    N density;  // per solid angle; 0 if the point is inside
   };
   Cone cone(const Vec3<N>& from) const {
     using std::sqrt;

@@ -65,8 +65,9 @@ class EmitterKernel final : public LightKernel<T> {
     return any(mine) ? select(mine, SolidEmitter<N>(emitter, ray.origin).pdf(ray, t), other) : other;
   }
 
-  // Fills one register of `out`. The shadow ray ends before the emitter, by a bound on the rounding errors of
-  // the emitter and of the ray's origin. A point of the emitter therefore does not light itself.
+  // Fills one register of `out`. The shadow ray ends before the emitter, at a distance that bounds the
+  // rounding errors of the emitter and of the ray's origin. The emitter therefore does not occlude its own
+  // light, and a point on the emitter does not light itself.
   static void put(const Emitter<N>& emitter, const SurfaceBatch<T>& surface, const PathDraws<T>& draws, int i,
                   const MaskOf<N>& mine, const N& probability, LightBatch<T>& out) {
     const N zero(T(0));

@@ -9,19 +9,20 @@
 
 namespace orrery {
 
+// Returns the emitter of a patch in world coordinates. `radiance` is emitted on both sides.
 Emitter<double> make_emitter(const Patch& patch, const Vec3d& radiance);
 
-// Transforms a model's patch to the world. Returns nullopt if the result is not a patch, such as an ellipsoid
-// from a sphere or a rectangle without right angles.
+// Transforms a patch of a model to the world and returns its emitter. Returns nullopt if the transformed
+// surface is not a Patch, for example an ellipsoid or a rectangle without right angles.
 std::optional<Emitter<double>> make_emitter(const Patch& patch, const Vec3d& radiance,
                                             const Affined& world_from_model);
 
-// Makes a kernel whose lights are the emitters, in this order.
+// Returns a kernel whose light i is emitters[i].
 template <class T>
 LightKernelPtr<T> make_emitters(std::span<const Emitter<double>> emitters);
 
-// Returns bounds of an emitter. The strength is twice its radiance. Far away, the estimate follows the
-// inverse-square law of its area.
+// Returns the bounds of an emitter for light selection. The strength is twice the radiance of the brightest
+// channel. Far away, the estimate follows the inverse-square law, in proportion to the emitter's area.
 LightBounds bounds_of(const Emitter<double>& emitter);
 
 }  // namespace orrery

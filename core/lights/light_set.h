@@ -6,21 +6,21 @@
 #include "core/model/light.h"
 #include "core/model/record.h"
 
-// Light types that are represented by one point or direction.
-// Each type is one record, `template <class N> struct Point`, with
+// Light types that are represented by one point or direction. Each type is one record, `template <class N>
+// struct Point`, with
 //   static constexpr LightTraits kTraits;
-//   static Point<double> read(Params&);                in the .cpp, which registers the type
-//   Vec3<N> intensity;                                 at the source; or whole_intensity()
+//   static Point<double> read(Params&);                in the .cpp that registers the type
+//   Vec3<N> intensity;                                 at the source; or a function whole_intensity()
 //   RoundingLimit rounding() const;                    optional, of Point<double>
 //   LightBounds bounds() const;                        of Point<double>
 //   Vec3d max_incident(double distance) const;         of Point<double>; see LightSet
 //   Arrival<N> arrive(const Vec3<N>& position) const;  light that arrives at a surface point
-// and, if path tracing samples its extent,
-//   MaskOf<N> extended() const;                                                  whether it has an extent
-//   LightSample<N> draw(const Vec3<N>& position, const N& u, const N& v) const;  a point by u and v
+// and, if path tracing samples the extent of the light,
+//   MaskOf<N> extended() const;                                                  whether draw() applies
+//   LightSample<N> draw(const Vec3<N>& position, const N& u, const N& v) const;  for u, v in [0, 1)
 //   DistantRadiance<N> beyond(const Vec3<N>& direction) const;                   if infinitely distant, with
 //   Vec3d max_radiance_at_infinity() const;                                      of Point<double>
-// `make_light_set<Point>` is its factory.
+// `make_light_set<Point>` is the factory of the type.
 namespace orrery {
 
 template <template <class> class Record, class T>

@@ -8,19 +8,21 @@
 
 namespace orrery {
 
-// Line light without width, of uniform intensity along its length and in all directions. Rays cannot hit it.
+// Infinitely thin line light. The intensity is uniform along the line and in all directions. Rays cannot hit
+// the line.
 template <class N>
 struct Line {
   Vec3<N> start, along;  // along: unit
   N extent;              // metres
-  Vec3<N> intensity;     // watts per steradian and metre
+  Vec3<N> intensity;     // watts per steradian and per metre of the line
 
   static constexpr LightTraits kTraits = {.delta = true};
   static Line<double> read(Params& p);
 
   Vec3<N> whole_intensity() const { return intensity * extent; }
 
-  // Treats the whole power as emitted at the midpoint, bounded by the value at half the line's length.
+  // Treats the whole power as emitted at the midpoint. The estimate is bounded by its value at half the
+  // line's length from the midpoint.
   LightBounds bounds() const {
     return {.centre = start + along * (extent / 2),
             .radius = extent / 2,
@@ -46,9 +48,10 @@ struct Line {
   }
 
   MaskOf<N> extended() const { return extent > N(T(0)); }
-  // Samples the line uniformly in the angle that it subtends, which cancels the squared distance. h is the
-  // distance from the line. s and t are positions along the line, from the nearest point to its start and to
-  // the sample. After an angle d from the start, t = h (s cos d + h sin d) / (h cos d - s sin d).
+  // Samples the line uniformly in the angle that it subtends at `position`, so the squared distance cancels.
+  // h is the distance of `position` from the infinite line. s and t are coordinates of the start and of the
+  // sample along the line, measured from the point nearest to `position`. At an angle d from the start, t = h
+  // (s cos d + h sin d) / (h cos d - s sin d).
   LightSample<N> draw(const Vec3<N>& position, const N& u, const N&) const {
     const Vec3<N> toward_start = start - position;
     const N s = dot(toward_start, along), end = s + extent;

@@ -4,14 +4,14 @@
 
 namespace orrery {
 
-// Cylinder wall visible from an outside point. Samples are uniform across its visible width and uniform in
-// the sine of the elevation along its length.
+// Cylinder wall visible from an outside point. Samples are uniform across the visible width of the wall.
+// Along its length, they are uniform in the sine of the elevation from the point.
 template <class N>
 class VisibleCylinderWall {
   using T = ScalarOf<N>;
 
  public:
-  // `from` points from the cylinder's centre to the shading point. `axis` is a unit vector.
+  // `from` is the vector from the cylinder's centre to the shading point. `axis` is a unit vector.
   VisibleCylinderWall(const Vec3<N>& from, const Vec3<N>& axis, const N& radius, const N& half_length)
       : axis_(axis), radius_(radius), along_(dot(from, axis)) {
     using std::sqrt;
@@ -29,13 +29,15 @@ class VisibleCylinderWall {
     half_width_ = sqrt(max_first(zero, N((one - share) * (one + share))));
   }
 
-  const MaskOf<N>& outside() const { return outside_; }  // whether the point is outside the infinite cylinder
-  // Returns the approximate solid angle in steradians, exact for a thin cylinder.
+  // Returns whether the shading point is outside the infinitely extended cylinder.
+  const MaskOf<N>& outside() const { return outside_; }
+  // Returns the approximate solid angle in steradians. The error vanishes as the radius goes to 0.
   N angle() const { return T(2) * radius_ / reach_ * range_; }
 
   struct Point {
     Vec3<N> from_centre, normal;
   };
+  // Samples a point for uniform u (lengthwise) and v (across) in [0, 1).
   Point draw(const N& u, const N& v) const {
     using std::sqrt;
     const N one(T(1)), s = low_ + u * range_;
@@ -47,7 +49,7 @@ class VisibleCylinderWall {
     return {axis_ * (along_ + z) + normal * radius_, normal};
   }
 
-  // Returns the density of draw() per area.
+  // Returns the density of draw() per square metre of the wall.
   N density(const Point& point) const {
     using std::sqrt;
     const N zero(T(0)), z = dot(point.from_centre, axis_) - along_, squares = z * z + reach_ * reach_;
@@ -67,9 +69,10 @@ class VisibleCylinderWall {
   MaskOf<N> outside_;
 };
 
-// Emitting box or cylinder, sampled from an outside point: selects one of its visible faces, or the wall, by
-// approximate solid angle. The density is 0 for points inside: the solid fills their view, and rounding may
-// move points of its inner surface outside. Lanes with emitters of other kinds are undefined.
+// Emitting box or cylinder, sampled from an outside point: draw() selects a visible face or the wall by
+// approximate solid angle. If the shading point is inside the solid, all densities are 0. The solid then
+// fills the whole view, so BSDF sampling always finds it, and rounding may move points of its inner surface
+// outside. Results are undefined in lanes with emitters of other kinds.
 template <class N>
 class SolidEmitter {
   using T = ScalarOf<N>;
@@ -108,7 +111,7 @@ class SolidEmitter {
             select(share > zero, N(select(on_wall, round.pdf, flat.pdf) * share / sum_), zero)};
   }
 
-  // Returns the density of draw() for the direction of a unit ray that hits the solid at t.
+  // Returns the density of draw() per solid angle, for the direction of a unit ray that hits the solid at t.
   N pdf(const Ray<N>& ray, const N& t) const {
     const Vec3<N> hit = ray.at(t);
     N nearest(std::numeric_limits<T>::infinity()), share(T(0));
@@ -129,9 +132,9 @@ class SolidEmitter {
   }
 
  private:
-  static constexpr int kParts = 6;  // a cylinder has three: two ends and the wall, which keeps Kind::cylinder
+  static constexpr int kParts = 6;  // box: six faces; cylinder: two ends and the wall, of Kind::cylinder
 
-  // Returns part k, with its normal outward.
+  // Returns part k, with the normal outward.
   Emitter<N> part(int k) const {
     const std::array<Vec3<N>, 3> axes{solid_.normal, solid_.a, solid_.b};
     const std::array<N, 3> half{solid_.length_c, solid_.length_a, solid_.length_b};

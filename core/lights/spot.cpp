@@ -25,8 +25,8 @@ Spot<double> Spot<N>::read(Params& p) {
   return {position, direction, intensity, attenuation, cos_inner, cos_outer, cos_inner - cos_outer};
 }
 
-// Cosines of directions have an error of about one epsilon. The smooth step amplifies it by at most 1.5 /
-// width.
+// Cosines of directions have an error of about one epsilon. The smooth step multiplies this error by at most
+// 1.5 / width.
 template <class N>
 RoundingLimit Spot<N>::rounding() const {
   constexpr double kMaxError = 2e-4;

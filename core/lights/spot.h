@@ -6,8 +6,8 @@
 
 namespace orrery {
 
-// Spot light: full intensity inside the inner cone, 0 outside the outer cone. Between them, a smooth step in
-// the cosine.
+// Spot light: full intensity inside the inner cone, 0 outside the outer cone. Between the cones, the
+// intensity is a smooth step in the cosine.
 template <class N>
 struct Spot {
   Vec3<N> position, direction, intensity;
@@ -19,7 +19,7 @@ struct Spot {
 
   RoundingLimit rounding() const;
 
-  // Assumes the full beam in every direction.
+  // Assumes the full intensity in every direction.
   LightBounds bounds() const {
     return {.centre = position,
             .strength = max_component(intensity),
@@ -39,7 +39,8 @@ struct Spot {
             intensity * (attenuation.at(distance) * beam)};
   }
 
-  // Equal angles make the quotient infinite or NaN. The result is then a step, full at the angle itself.
+  // Returns the fraction of the intensity at a cosine to the beam axis. If both angles are equal, the
+  // quotient is infinite or NaN. The result is then 1 up to and including that angle, and 0 beyond.
   N cone(const N& cosine) const {
     using T = ScalarOf<N>;
     const N x = (cosine - cos_outer) / cos_range;

@@ -52,14 +52,14 @@ struct Extents {
   }
 };
 
-// Returns an upper bound of the absolute world coordinates of a model's point, including its rotation between
-// keys.
+// Returns an upper bound of the absolute world coordinates of a point of a model. The bound includes the
+// rotation of a moving instance between keys.
 double reach_of(const Instance& instance, const Affined& world_from_model, const Vec3d& point) {
   if (instance.motion.times.size() == 1) return max_component(abs(world_from_model.point(point)));
   return max_component(abs(world_from_model.origin)) + length(world_from_model.vector(point));
 }
 
-// Adds instances, in world coordinates and in the model coordinates in which rays are traced.
+// Adds the extents of instances, in world coordinates and in the model coordinates in which rays are traced.
 void add_instances(const Scene& scene, SceneFacts& facts) {
   std::vector<Extents> of_models;
   for (const Model& model : scene.models) {
@@ -75,7 +75,7 @@ void add_instances(const Scene& scene, SceneFacts& facts) {
       take_larger(facts.magnitude, own.magnitude.value, where);
       take_smaller(facts.smallest_feature, own.smallest.value / stretch(inverse(world_from_model)), where);
       facts.unbounded = facts.unbounded || own.has_unbounded;
-      if (own.has_unbounded)  // anchor point of an unbounded primitive
+      if (own.has_unbounded)  // the anchor of an unbounded primitive, in world coordinates
         take_larger(
             facts.magnitude,
             max_component(abs(world_from_model.origin)) + stretch(world_from_model) * own.magnitude.value,
@@ -98,7 +98,7 @@ void add_lights(const Scene& scene, SceneFacts& facts) {
   }
 }
 
-// Returns the first primitive of each material, or -1 if the material is unused.
+// Returns the first primitive of each material, or -1 if no primitive uses the material.
 std::vector<std::int32_t> find_first_users(const Scene& scene) {
   std::vector<std::int32_t> first_user;
   for (std::size_t p = scene.material_of.size(); p-- > 0;) {
@@ -109,7 +109,7 @@ std::vector<std::int32_t> find_first_users(const Scene& scene) {
   return first_user;
 }
 
-// Adds the materials that some primitive uses.
+// Adds the materials that at least one primitive uses.
 void add_materials(const Scene& scene, std::span<const std::int32_t> first_user, SceneFacts& facts) {
   std::size_t first = 0;
   for (const auto& set : scene.materials) {

@@ -4,8 +4,8 @@
 
 namespace orrery {
 
-// Computes the facts about a scene that the plan needs. REQUIRES: primitives, materials and objects are
-// numbered, and scene.motion is set. Throws Cancelled.
+// Computes the facts about a scene that plans need. REQUIRES: primitives, materials and objects are numbered,
+// and scene.motion is set. Throws Cancelled.
 SceneFacts gather_facts(const Scene& scene);
 
 }  // namespace orrery

@@ -63,7 +63,7 @@ void read_camera(Params& p, Scene& scene) {
 }
 
 // Asset source that loads each mesh once, even if the scene names it several times. Images are not cached,
-// because a scene names only one.
+// because a scene names at most one image.
 class CachedMeshSource final : public AssetSource {
  public:
   explicit CachedMeshSource(const AssetSource& from) : from_(from) {}
@@ -87,7 +87,7 @@ class CachedMeshSource final : public AssetSource {
   mutable Meshes files_, assets_;
 };
 
-// Reads the objects of a scene or model and records the material of each.
+// Reads the objects of a scene or model and records the material of each object.
 class ObjectReader {
  public:
   explicit ObjectReader(std::vector<std::unique_ptr<ShapeSet>>& shapes) : shapes_(shapes) {
@@ -116,7 +116,7 @@ class ObjectReader {
   struct ObjectOf {
     std::size_t material;
     int primitives;
-    std::int32_t object;  // index in reading order
+    std::int32_t object;  // index in the order of reading
   };
   std::int32_t count_ = 0;
   std::vector<std::unique_ptr<ShapeSet>>& shapes_;
@@ -135,7 +135,7 @@ Vec3d read_scale(Params& p, const Fallback<Vec3d>& fallback) {
   return {scale[0], scale[1], scale[2]};
 }
 
-// Reads the placement at one key. Missing values default to those of `rest`.
+// Reads the placement at one key. Missing values default to the values of `rest`.
 Placement read_key(Params& p, const Placement& rest) {
   Placement key{read_scale(p, derived(rest.scale)),
                 p.number("degrees", "Rotation in degrees about the axis of `rotate`; 720 is two turns.",
@@ -220,7 +220,7 @@ class SceneReader {
     gather_motion();
     scene_->facts = gather_facts(*scene_);
     const LocatedValue& smallest = scene_->facts.smallest_feature;
-    if (smallest.value > 0 && smallest.value < kMinSize)  // moving triangles may have size 0 at times
+    if (smallest.value > 0 && smallest.value < kMinSize)  // moving triangles may have size 0 at some times
       throw InputError(smallest.where, "shapes and triangles must be at least " + number_text(kMinSize) +
                                            " m in size (got " + number_text(smallest.value) + ")");
     return scene_;
@@ -229,7 +229,7 @@ class SceneReader {
  private:
   struct MaterialPlace {
     std::size_t set;
-    int index;  // in the set
+    int index;  // within the set
     Vec3d emission;
   };
 
@@ -272,7 +272,7 @@ class SceneReader {
            [&](Params& o) { objects.read(o, names_, meshes_); });
   }
 
-  // Numbers the materials set by set and stores the number for each primitive.
+  // Numbers the materials set by set and stores the material number of each primitive.
   void number_materials() {
     std::vector<int> first(scene_->materials.size(), 0);
     for (std::size_t set = 1; set < first.size(); ++set)
@@ -295,8 +295,8 @@ class SceneReader {
     }
   }
 
-  // Records which primitives belong to which object. A run ends where the next one starts, so objects without
-  // primitives have none.
+  // Records which primitives belong to which object. A run ends where the next run starts. Objects without
+  // primitives have no run.
   void number_objects() {
     std::int32_t primitive = 0, resting = 0;
     const auto add = [&](std::size_t primitives, std::int32_t object) {

@@ -16,13 +16,14 @@ double distance_to(const Boundsd& box, const Vec3d& p) {
   return length(largest(zero, largest(box.lo - p, p - box.hi)));
 }
 
-// Upper bounds of the incident light from all lights together at one point: with lights as points, and with
-// their extents.
+// Upper bounds of the incident light from all lights together at one surface point. of_points treats each
+// light as one point or direction, of_extents includes the extent of each light.
 struct DirectLight {
   Vec3d of_points{0.0}, of_extents{0.0};
 };
 
-// Assumes distance 0 to all lights if the scene moves or is unbounded.
+// Returns bounds for all points of the scene. Assumes distance 0 to all lights if the scene moves or is
+// unbounded.
 DirectLight find_direct_light(const Scene& scene, const SceneFacts& facts) {
   const bool anywhere = facts.unbounded || !scene.motion.empty() || !facts.bounds.bounded();
   DirectLight found;
@@ -37,12 +38,13 @@ DirectLight find_direct_light(const Scene& scene, const SceneFacts& facts) {
   return found;
 }
 
-// Returns the maximum radiance of rays that miss all surfaces.
+// Returns the maximum radiance of the environment or the background.
 Vec3d max_sky_radiance(const Scene& scene) {
   return scene.environment ? scene.environment->most() : scene.background;
 }
 
-// Returns the smallest V with V = own + albedo V per channel: 0 if own is 0, else infinite if albedo >= 1.
+// Returns the smallest V >= 0 with V = own + albedo V, per channel: 0 if own is 0, otherwise infinity if
+// albedo >= 1.
 Vec3d interreflected(const Vec3d& own, const Vec3d& albedo) {
   const auto series = [](double of_itself, double share) {
     return of_itself == 0 ? 0 : share < 1 ? of_itself / (1 - share) : kUnlimited;
@@ -53,14 +55,17 @@ Vec3d interreflected(const Vec3d& own, const Vec3d& albedo) {
 }  // namespace
 
 // Bounds the radiance that each technique can compute. `own` is the radiance that a surface emits and
-// reflects directly from light sources. All other radiance that it reflects or refracts is an average over
-// other surfaces. The maximum V over all surfaces is therefore at most the maximum of own + albedo V. Ray
-// trees follow only mirror reflection and refraction, a fraction R of the light. Except for emission, `own`
-// is then at most 1 - R of the limit.
+// reflects directly from light sources. All other radiance that the surface reflects or refracts is an
+// average over other surfaces. The maximum V over all surfaces is therefore at most the maximum of own +
+// albedo V.
+//
+// Ray trees follow only mirror reflection and refraction, which return a fraction R of the light. Ambient and
+// direct light of a surface are at most 1 - R times their limits, so V does not exceed the largest sum of
+// these limits. Emission is not reduced, so V has no bound if an emitting surface is specular.
 void find_radiance_ranges(const Scene& scene, const std::vector<bool>& used, SceneFacts& facts) {
   const DirectLight light = find_direct_light(scene, facts);
   Vec3d tree = max_sky_radiance(scene), paths = tree;
-  for (const LightPlace& place : scene.lights)  // sun discs are in front of the sky and may overlap
+  for (const LightPlace& place : scene.lights)  // sun discs add to the sky and may overlap
     paths = paths + scene.light_sets[place.set]->max_radiance_at_infinity(place.index);
   Vec3d distributed = paths;
   std::size_t number = 0;

@@ -16,16 +16,19 @@ namespace orrery {
 namespace {
 
 constexpr std::size_t kMaxPrimitives = 256;
-// Sample times of a motion: evenly spaced ones, both ends included, and key times.
+// Sample times of a motion: kEvenMoments evenly spaced times, including both ends, and up to kMaxKeyTimes key
+// times.
 constexpr int kEvenMoments = 9;
 constexpr std::size_t kMaxKeyTimes = 16;
-// Maximum total number of rays toward primitives, and minimum number per primitive, within kMaxTests.
+// Maximum number of rays per primitive: kManyRays / (number of primitives), but at least kFewestRays.
 constexpr std::size_t kManyRays = 1024, kFewestRays = 6;
-constexpr std::size_t kMaxTests = 1u << 19;  // ray-primitive tests, over all sample times
+constexpr std::size_t kMaxTests = 1u << 19;  // maximum ray-primitive tests, over all sample times
 constexpr double kCoincident = 1e-13;        // times the largest coordinate; nearer surfaces count as one
 constexpr double kBeside = 0.05;             // shift to a neighbouring ray, times the primitive's size
 constexpr double kSame = 1e-6;               // relative tolerance of equal distances
-constexpr double kLayerGap = 1e-3;  // times the primitive's size; surfaces farther apart are not layers
+// Enlargement of boxes that are tested for overlap, times the size of the smaller box. Rays of pairs also
+// start at this distance from the surface.
+constexpr double kLayerGap = 1e-3;
 constexpr double kParallel = 0.99;  // minimum cosine between the normals of parallel surfaces
 
 // Primitive in the world at one time.
@@ -34,7 +37,7 @@ struct PlacedPrimitive {
   std::size_t object;  // index into Scene::object_runs
   const ShapeSet* shapes;
   const ShapeKernel<double>* kernel;
-  int index, number;  // in the set; in the scene
+  int index, number;  // index in the set; number in the scene
   Affined world_from_model, model_from_world;
   Boundsd box;  // in the world
 };
@@ -43,7 +46,7 @@ struct SurfaceAt {
   Vec3d position;
   Vec3d outward;    // unit geometric normal
   Vec3d shading;    // shading normal, smoothed on meshes
-  double distance;  // along the ray, in lengths of its direction
+  double distance;  // along the ray, in units of the length of its direction
 };
 
 // Intersects single rays with primitives and counts the tests.
@@ -83,8 +86,9 @@ bool may_meet(const Boundsd& box, const Ray<double>& ray) {
                 std::numeric_limits<double>::max());
 }
 
-// Curved mirrors visible from one curved mirror, and the distance to the nearest. `radius` is the radius of
-// curvature of the viewing mirror at the point closest to it.
+// Curved mirrors visible from one curved mirror, as indices into Scene::object_runs. `distance` is the
+// distance to the nearest of these mirrors. `radius` is the radius of curvature of the viewing mirror at the
+// point from which this distance was measured.
 struct VisibleMirrors {
   std::set<std::size_t> others;
   double distance = std::numeric_limits<double>::infinity(), radius = 0;
@@ -130,9 +134,9 @@ class LayerGapSearch {
     return times;
   }
 
-  // Measures all primitives, or only moving ones if `moving_alone`. Each round traces one ray toward each
-  // primitive. Pairs with overlapping boxes are measured afterwards. Stops when the total number of
-  // ray-primitive tests exceeds `before` + `tests`.
+  // Measures all primitives, or only moving primitives if `moving_alone`. Each round traces one ray toward
+  // each primitive, until probe_.tests() exceeds `before` + `tests` / 2. Then pairs with overlapping boxes
+  // are measured, until probe_.tests() reaches `before` + `tests`.
   void measure_placed(bool moving_alone, std::size_t before, std::size_t tests) {
     max_tests_ = before + tests / 2;
     std::vector<std::vector<Ray<double>>> rays;
@@ -153,8 +157,8 @@ class LayerGapSearch {
     measure_pairs(moving_alone);
   }
 
-  // Measures the distance between the surfaces of two primitives that overlap only in part, with a ray
-  // through the middle of the intersection of their boxes.
+  // Measures the distance between the surfaces of pairs of primitives. This finds layers that overlap only in
+  // part: the first ray passes through the middle of the intersection of both boxes.
   void measure_pairs(bool moving_alone) {
     for (std::size_t i = 0; i < placed_.size(); ++i) {
       interruption_point();
@@ -189,7 +193,8 @@ class LayerGapSearch {
     }
     if (distance > kCoincident * magnitude_) take_distance(one, distance);
   }
-  // Keeps the smaller layer distance. If distances are equal up to rounding, reports the first object.
+  // Keeps the smaller layer distance. If distances are equal up to rounding, keeps the distance of the object
+  // with the lower number.
   void take_distance(const PlacedPrimitive& from, double distance) {
     const double ratio = distance / spacing_.layer_distance.value;
     const int object = scene_.object_runs[from.object].object;
@@ -239,9 +244,9 @@ class LayerGapSearch {
     return box;
   }
 
-  // Returns rays that may hit the primitive. Triangles: along the normal, at the middle and near the corners.
-  // Unbounded primitives: from look_at and from a point near it. Other primitives: toward the middle of the
-  // box.
+  // Returns rays that may hit the primitive. Triangles: rays against the normal, at the middle and near the
+  // corners. Unbounded primitives: rays in 26 directions from look_at and from a point near look_at. Other
+  // primitives: rays from 26 directions toward the middle of the box.
   std::vector<Ray<double>> rays_at(const PlacedPrimitive& placed) const {
     std::vector<Ray<double>> rays;
     const std::vector<HullTriangle> hull = placed.kernel->hull(placed.index);
@@ -260,7 +265,7 @@ class LayerGapSearch {
     if (!bounded) add_toward(beside_look_at(), 0, rays);
     return rays;
   }
-  // Adds rays from all sides that start `away` metres from `middle` and aim at it.
+  // Adds rays from 26 directions toward `middle`. They start `away` metres from `middle`.
   static void add_toward(const Vec3d& middle, double away, std::vector<Ray<double>>& rays) {
     for (int x = -1; x <= 1; ++x)
       for (int y = -1; y <= 1; ++y)
@@ -277,7 +282,8 @@ class LayerGapSearch {
   }
   static Vec3d mix(const Vec3d& corner, const Vec3d& middle) { return corner * 0.8 + middle * 0.2; }
 
-  // Measures at three neighbouring points, because two touching spheres are close at a single point only.
+  // Measures at three neighbouring points of one primitive and uses the largest distance, because touching
+  // spheres are close at a single point only.
   void look_around(const PlacedPrimitive& from, const Ray<double>& ray, VisibleMirrors& seen) {
     const auto first = probe_.meet(from, ray);
     if (!first) return;
@@ -295,8 +301,8 @@ class LayerGapSearch {
     if (complete_) look_for_mirrors(from, at, seen);
   }
 
-  // Returns the shifts to two neighbouring points. On a triangle they follow its sides, so that the points
-  // stay on it however thin it is.
+  // Returns the shifts to two neighbouring points. On a triangle, the shifts follow two sides, so that the
+  // points are on the triangle even if it is thin.
   static std::pair<Vec3d, Vec3d> beside(const PlacedPrimitive& placed, const SurfaceAt& at, double size) {
     const std::vector<HullTriangle> hull = placed.kernel->hull(placed.index);
     if (hull.size() == 1) {
@@ -337,7 +343,8 @@ class LayerGapSearch {
   }
   // Ray errors grow by a factor of 1 + 2 d / r on the way to a mirror at distance d. Each of the other
   // mirrors is hit by a fraction of about (r / (d + r))^2 of the rays that leave a mirror. The growth is
-  // weighted by the square root of the fraction that hits any mirror, because errors are averaged as squares.
+  // multiplied by the mirrored share of the material. It is also multiplied by the square root of the
+  // fraction that hits any mirror, because errors are averaged as squares.
   void take_mirror(const PlacedPrimitive& from, const VisibleMirrors& seen) {
     const auto& [others, d, r] = seen;
     if (others.empty()) return;
@@ -346,8 +353,8 @@ class LayerGapSearch {
     if (counted > spacing_.mirrors.growth)
       spacing_.mirrors = {counted, r, pointer_to_object(scene_, from.number)};
   }
-  // Estimates the radius from the curvatures in two perpendicular directions: exact for a cylinder, too small
-  // by a factor of sqrt(2) for a sphere.
+  // Estimates the radius of curvature in metres from the curvatures in two directions. For perpendicular
+  // directions, the estimate is exact for a cylinder and too small by a factor of sqrt(2) for a sphere.
   static double radius_at(const std::array<SurfaceAt, 3>& at) {
     const auto curvature = [&](const SurfaceAt& beside) {
       return length(beside.shading - at[0].shading) / length(beside.position - at[0].position);
@@ -390,12 +397,12 @@ class LayerGapSearch {
   std::deque<ShapeKernelPtr<double>> kernels_;                 // kernels of moving shapes
   std::map<const ShapeSet*, ShapeKernelPtr<double>> resting_;  // kernels of resting shapes
   std::vector<PlacedPrimitive> placed_;
-  bool complete_ = true;        // false if primitives were skipped; mirrors are then not measured
+  bool complete_ = true;        // false if primitives were skipped: mirrors are not measured then
   std::vector<double> shares_;  // mirrored share of each material
   PrimitiveTester probe_;
   std::vector<VisibleMirrors> mirrors_;  // by object
   int layer_object_ = 0;                 // object of spacing_.layer_distance
-  std::size_t max_tests_ = 0;            // up to and including this sample time
+  std::size_t max_tests_ = 0;            // limit of probe_.tests() in the current step
   SurfaceGaps spacing_;
 };
 

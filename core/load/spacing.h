@@ -4,12 +4,12 @@
 
 namespace orrery {
 
-// Distances between the surfaces of a scene, in metres. They are measured with double-precision rays along
-// the normals at a few points of each primitive. A moving scene is measured at nine evenly spaced times and
-// at up to 16 key times. Only the first 256 primitives are measured. Mirrors are measured only in scenes with
-// at most 256 primitives.
+// Distances between the surfaces of a scene, in metres. The distances are measured with double-precision rays
+// along the normals at a few points of each primitive. Moving primitives are measured at nine evenly spaced
+// times and at up to 16 key times. Only the first 256 primitives are measured. Mirrors are measured only in
+// scenes with at most 256 primitives.
 struct SurfaceGaps {
-  // Smallest distance between two parallel surfaces, of one body or of two.
+  // Smallest distance between two parallel surfaces of the same primitive or of different primitives.
   LocatedValue layer_distance{std::numeric_limits<double>::infinity(), ""};
   // Curved mirror with the largest error growth toward other curved mirrors: see take_mirror().
   MirrorChain mirrors;

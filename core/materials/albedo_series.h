@@ -6,13 +6,14 @@
 
 namespace orrery {
 
-// Albedo as a function of a cosine mu in [0, 1]: a Chebyshev series in s = (1 + c) mu / (c + mu). Microfacet
-// albedos are smooth functions of s if the scale c equals alpha or is slightly larger.
+// Albedo as a function of a cosine mu in [0, 1]: a Chebyshev series in s = (1 + c) mu / (c + mu). The scale c
+// is about the width in mu of the steepest part of the albedo, usually the GGX alpha. The albedo is then a
+// smooth function of s.
 template <class N, std::size_t kTerms>
 struct AlbedoSeries {
   std::array<N, kTerms> coefficients;
   N scale;
-  N mean;  // hemispherical mean: the integral of 2 mu E(mu)
+  N mean;  // cosine-weighted mean over the hemisphere: the integral of 2 mu E(mu)
 
   // Returns the series at `mu`, clamped to [0, 1]. Uses Clenshaw's recurrence.
   [[gnu::always_inline]] N at(const N& mu) const {
@@ -34,6 +35,7 @@ struct AlbedoSeries {
 inline double chebyshev_cosine(std::size_t terms, std::size_t j, std::size_t k) {
   return sine_cosine_turns(static_cast<double>(j * (2 * k + 1)) / (4.0 * static_cast<double>(terms))).cosine;
 }
+// Returns the cosine mu of interpolation node k.
 template <std::size_t kTerms>
 double series_node(double scale, std::size_t k) {
   const double s = (1 + chebyshev_cosine(kTerms, 1, k)) / 2;

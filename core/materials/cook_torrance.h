@@ -28,7 +28,7 @@ struct CookTorrance {
     return diffuse * (with_diffuse(lobes) ? one : zero) +
            specular * reflectance(one) * (with_non_diffuse(lobes) ? one : zero);
   }
-  // Returns the probability of sampling a facet.
+  // Returns the probability of sampling a facet. Otherwise, drawn() samples a cosine-weighted direction.
   N facet_chance(Lobes lobes) const {
     return lobes == Lobes::all ? chance : N(ScalarOf<N>(with_non_diffuse(lobes) ? 1 : 0));
   }

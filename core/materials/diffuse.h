@@ -6,7 +6,7 @@
 namespace orrery {
 
 // Kernel of materials that scatter over the whole hemisphere and are sampled in proportion to the cosine. In
-// addition to the members for MaterialRecords, a record has
+// addition to the members listed in material_set.h, a record has
 //   Vec3<N> reflectance;                     approximate albedo under uniform light
 //   Vec3<N> pi_brdf(light, viewer, between)  pi times the BRDF, as a function of N.L > 0, N.V and L.V
 template <template <class> class Record, class T>
@@ -37,7 +37,8 @@ class DiffuseKernel final : public MaterialRecords<Record, T> {
     });
   }
 
-  // Samples directions with density proportional to the cosine. The weight f cos / pdf is then pi f.
+  // Samples directions with density proportional to the cosine, so the weight (BRDF times cosine over
+  // density) is pi times the BRDF.
   void sample(const RayBatch<T>& rays, const HitBatch<T>&, const SurfaceBatch<T>& surface,
               const PathDraws<T>& draws, const LaneGroups& groups, Lobes,
               ScatterBatch<T>& out) const override {

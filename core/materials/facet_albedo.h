@@ -14,10 +14,10 @@ inline constexpr double kMinAlpha = 1e-3;  // smallest GGX alpha of a rough surf
 template <class N>
 using FacetAlbedo = AlbedoSeries<N, 20>;
 
-// Returns the mean of share(viewer, normal, seen) over the normals visible at a cosine mu, as a series in mu.
-// seen(c) is G2 / G1 for light at cosine c. Samples the normals on a Fibonacci lattice over half of the
-// azimuths. The absolute error is 1e-3 if `share` has the step of total reflection, and 2e-4 if `share` is
-// smooth.
+// Returns the mean of share(viewer, normal, seen) over the normals visible from a viewer at cosine mu, as a
+// series in mu with this `scale`. seen(c) is G2 / G1 for light at cosine c. Samples the normals on a
+// Fibonacci lattice over half of the azimuths, because the other half is symmetric. The absolute error is up
+// to 1e-3 if `share` has a step at the critical angle, and up to 2e-4 if `share` is smooth. Throws Cancelled.
 template <class Share>
 FacetAlbedo<double> facet_albedo(double alpha, double scale, const Share& share) {
   constexpr std::size_t kTerms = std::tuple_size_v<decltype(FacetAlbedo<double>::coefficients)>;
@@ -41,7 +41,8 @@ FacetAlbedo<double> facet_albedo(double alpha, double scale, const Share& share)
   return series_through(values, scale);
 }
 
-// Returns the albedo of facets with reflectance fresnel(cosine to the facet normal).
+// Returns the albedo of facets that mirror the fraction fresnel(cosine to the facet normal). Throws
+// Cancelled.
 template <class Fresnel>
 FacetAlbedo<double> mirrored_albedo(double alpha, const Fresnel& fresnel) {
   const auto share = [&](const Vec3d& viewer, const Vec3d& normal, const auto& seen) {

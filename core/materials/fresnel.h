@@ -2,11 +2,11 @@
 
 #include "core/math/lanes.h"
 
-// Fresnel reflectances of smooth surfaces for unpolarised light. Cosines are those of the angles to the
+// Fresnel reflectances of smooth surfaces for unpolarised light. Each cosine is the cosine of an angle to the
 // normal, in [0, 1].
 namespace orrery {
 
-// Returns Schlick's approximation F0 + (1 - F0) (1 - cos)^5. REQUIRES: `cosine` is that of the direction in
+// Returns Schlick's approximation F0 + (1 - F0) (1 - cos)^5. REQUIRES: `cosine` belongs to the direction in
 // the optically thinner medium.
 template <class N>
 [[gnu::always_inline]] inline N fresnel_schlick(const N& f0, const N& cosine) {
@@ -25,8 +25,8 @@ template <class N>
   return (s * s + p * p) * ScalarOf<N>(0.5);
 }
 
-// Result of split_dielectric(), which needs only the cosine of incidence. Beyond the critical angle, the
-// reflectance is 1 and cos_transmitted is 0.
+// Reflectance and cosine of the transmitted direction, computed from the cosine of the incident direction.
+// Beyond the critical angle, the reflectance is 1 and cos_transmitted is 0.
 template <class N>
 struct DielectricSplit {
   N reflectance, cos_transmitted;
@@ -43,7 +43,7 @@ template <class N>
   return {select(total, one, reflectance), cos_transmitted};
 }
 
-// Returns the mean of split_dielectric() over the hemisphere: the integral of 2 mu F(mu).
+// Returns the cosine-weighted mean reflectance over the hemisphere: the integral of 2 mu F(mu) over [0, 1].
 inline double mean_dielectric(double eta) {
   constexpr int kSteps = 4096;
   double sum = 0;
@@ -69,7 +69,7 @@ template <class N>
   return (s + s * ratio) * T(0.5);
 }
 
-// Returns F0 of Schlick's approximation: ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2).
+// Returns the reflectance along the normal, F0: ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2).
 template <class N>
 [[gnu::always_inline]] inline N normal_reflectance(const N& n, const N& k) {
   using T = ScalarOf<N>;

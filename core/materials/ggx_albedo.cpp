@@ -11,8 +11,8 @@ constexpr std::size_t kTerms = 14;
 constexpr std::size_t kRows = 32;  // values of alpha, evenly spaced in [0, 1]
 using Row = std::array<double, kTerms>;
 
-// Returns the mean of G2 / G1 over the normals visible at cosine mu, by the midpoint rule. Uses half of the
-// azimuths, because the other half is symmetric.
+// Returns the mean of G2 / G1 over the normals visible from a viewer at cosine mu, by the midpoint rule. Uses
+// half of the azimuths, because the other half is symmetric.
 double albedo(double alpha, double mu) {
   constexpr int kDepths = 256, kAzimuths = 32;
   const Ggx<double> facets{alpha};

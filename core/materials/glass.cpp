@@ -6,8 +6,8 @@
 namespace orrery {
 namespace {
 
-// Returns the approximate angular spread of refracted rays per unit of alpha. Glass with a spread below
-// kMinSpread is treated as smooth.
+// Returns the approximate angular spread of refracted rays in radians, divided by alpha. Glass with a spread
+// below kMinSpread is treated as smooth.
 double spread_by_index(double ior) { return std::abs(std::log2(ior)); }
 constexpr double kMinSpread = 1e-4;
 
@@ -27,9 +27,9 @@ FacetAlbedo<double> lossless_albedo(double alpha, double far_index) {
 
 }  // namespace
 
-// Computes the transmitted fractions of multiple scattering from the mean Fresnel reflectance F. Scales them
-// so that both are at most 1 and f / n^2 is symmetric: see Glass. F is computed on the optically thinner
-// side, which has no total reflection. n^2 (1 - F) is equal on both sides.
+// The transmitted fractions of multiple scattering follow from the mean Fresnel reflectance F. They are
+// scaled so that both are at most 1 and f / n^2 is symmetric: see Glass. F is computed on the optically
+// thinner side, which has no total reflection. n^2 (1 - F) is equal on both sides.
 template <class N>
 Glass<double> Glass<N>::read(Params& p) {
   const double ior = p.number("ior", "Index of refraction inside, divided by the index outside.",

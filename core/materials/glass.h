@@ -46,8 +46,8 @@ struct Glass {
     return Vec3<N>(select(alpha > zero, one, zero));
   }
 
-  // Returns the transmittance of the body over `travelled` metres. `travelled` may be uninitialised if no
-  // material filters.
+  // Returns the transmittance over `travelled` metres in lanes where the ray arrives from inside, else 1.
+  // `travelled` may be uninitialised if no material filters.
   Vec3<N> body_transmittance(const MaskOf<N>& is_inside, const N& travelled) const {
     const N zero(ScalarOf<N>(0));
     const auto filters = is_inside && max_component(-body.log2_filter) > zero;
@@ -90,8 +90,8 @@ struct Glass {
     return {Vec3<N>((single + passed_viewer * passed_light * spread.chance * spread.scale) * cosine), pdf};
   }
 
-  // Samples either a visible facet, which mirrors or refracts, or a cosine-weighted direction on one of the
-  // sides.
+  // Samples either a visible facet, which mirrors or refracts, or a cosine-weighted direction on either side
+  // of the surface.
   DrawnDirection<N> drawn(const Vec3<N>& viewer, const MaskOf<N>& is_inside, Lobes,
                           const LobeDraw<N>& draw) const {
     using T = ScalarOf<N>;
@@ -118,7 +118,7 @@ struct Glass {
     N scale;   // 1 / (1 - mean albedo of the light's side); 0 if that albedo is 1
   };
   struct MultipleScattering {
-    N viewer, light;
+    N viewer, light;  // fractions that are scattered between facets at the cosines of viewer and light
     MultipleLobe spread;
   };
   [[gnu::always_inline]] MultipleScattering multiple_scattering(const N& viewer, const N& light,

@@ -5,7 +5,7 @@
 
 namespace orrery {
 
-// Lambertian reflection: radiance is the same in all directions (Lambert, Photometria, 1760).
+// Lambertian reflection: the reflected radiance is the same in all directions (Lambert, Photometria, 1760).
 template <class N>
 struct Lambert {
   Vec3<N> reflectance;

@@ -14,7 +14,8 @@ struct Scattered {
   N pdf;
 };
 
-// Sampled direction in ShadingFrame coordinates. `through` lanes leave on the far side of the surface.
+// Sampled direction in ShadingFrame coordinates. In the lanes `through`, the direction leaves on the far side
+// of the surface.
 template <class N>
 struct DrawnDirection {
   Vec3<N> direction;
@@ -26,7 +27,8 @@ template <class N>
 struct LobeDraw {
   N u, v, side;
 
-  // Result of choose(): lanes where u < `share`, and the remainder of u rescaled to [0, 1).
+  // Result of choose(). `first` are the lanes where u < `share`. `u` is the random number rescaled to [0, 1)
+  // within the chosen part, so that it can be used again.
   struct Choice {
     MaskOf<N> first;
     N u;
@@ -39,8 +41,8 @@ struct LobeDraw {
   }
 };
 
-// Returns the probability of sampling a lobe of albedo `own` rather than one of albedo `other`. Returns 0 if
-// only `own` is 0, 1 if `other` is 0, and otherwise a value in [0.05, 0.95].
+// Returns the probability of sampling a lobe of albedo `own` rather than a lobe of albedo `other`. Returns 1
+// if `other` is 0, 0 if only `own` is 0, and otherwise a value in [0.05, 0.95].
 template <class N>
 [[gnu::always_inline]] inline N lobe_chance(const N& own, const N& other) {
   using T = ScalarOf<N>;
@@ -49,14 +51,14 @@ template <class N>
   return select(other > zero, select(own > zero, chance, zero), one);
 }
 
-// Kernel of materials whose scattering depends on both directions. In addition to the members for
-// MaterialRecords, a record has the following members. Directions are in ShadingFrame coordinates, with the
+// Kernel of materials whose scattering depends on both directions. In addition to the members listed in
+// material_set.h, a record has the following members. Directions are in ShadingFrame coordinates, with the
 // viewer above the surface.
-//   N rough() const                                           0: smooth, sampled by the derived kernel only
-//   Vec3<N> ambient_reflectance(cosine, lobes) const          reflectance of ambient light toward a viewer
+//   N rough() const                                           0: only specular; the derived kernel samples it
+//   Vec3<N> ambient_reflectance(cosine, lobes) const          fraction of ambient light sent to the viewer
 //   Scattered<N> scattered(viewer, light, inside, lobes)      value and density for light on either side
 //   DrawnDirection<N> drawn(viewer, inside, lobes, LobeDraw)  direction with the density of scattered()
-//   Vec3<N> body_transmittance(inside, travelled)             transmittance along `travelled` metres
+//   Vec3<N> body_transmittance(inside, travelled)             transmittance of `travelled` metres inside
 template <template <class> class Record, class T>
 class LobeKernel : public MaterialRecords<Record, T> {
  public:

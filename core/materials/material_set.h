@@ -17,8 +17,8 @@
 //   ReflectionLimits limits() const;     if bounds are known
 namespace orrery {
 
-// Materials of one type in the render's precision, and a loop over the registers in which surfaces have one
-// of them.
+// Materials of one type in the render's precision, and a loop over the registers that contain surfaces with
+// these materials.
 template <template <class> class Record, class T>
 class MaterialRecords : public MaterialKernel<T> {
  public:
@@ -29,8 +29,9 @@ class MaterialRecords : public MaterialKernel<T> {
   }
 
  protected:
-  // Calls visit(i, mine, record) for each register, starting at ray i, in which lanes `mine` have these
-  // materials.
+  // Calls visit(i, mine, record) for each register of `groups` with at least one of these materials. i is the
+  // first ray of the register. `mine` are the lanes with these materials, and `record` contains the material
+  // of each such lane.
   template <class Visit>
   void for_each_register(const SurfaceBatch<T>& surface, const LaneGroups& groups, const Visit& visit) const {
     const int last = first_ + static_cast<int>(records_.size());

@@ -12,7 +12,7 @@
 namespace orrery {
 namespace {
 
-// Returns the hemispherical mean of F: the integral of 2 mu F(mu).
+// Returns the cosine-weighted mean reflectance over the hemisphere: the integral of 2 mu F(mu).
 double mean_reflectance(double n, double k) {
   constexpr int kSteps = 256;
   double sum = 0;
@@ -99,8 +99,8 @@ class MetalKernel final : public MaterialRecords<Metal, T> {
     });
   }
 
-  // Samples either a visible microfacet, which mirrors, or a cosine-weighted direction: see
-  // Metal::multiple_share().
+  // Smooth metals mirror the ray. Rough metals mirror the ray about a visible microfacet, or sample a
+  // cosine-weighted direction with the probability Metal::multiple_share().
   void sample(const RayBatch<T>& rays, const HitBatch<T>&, const SurfaceBatch<T>& surface,
               const PathDraws<T>& draws, const LaneGroups& groups, Lobes,
               ScatterBatch<T>& out) const override {

@@ -12,7 +12,8 @@ namespace orrery {
 
 // Metal of microfacets, coloured by Fresnel's equations. Light scattered between facets is restored by the
 // lobe of Kulla and Conty ("Revisiting Physically Based Shading at Imageworks", SIGGRAPH course, 2017). A
-// metal that mirrors all light therefore has albedo 1 at any roughness. With alpha 0 it is a mirror.
+// metal that mirrors all light therefore has albedo 1 at any roughness. With alpha 0, the metal is a smooth
+// mirror.
 template <class N>
 struct Metal {
   Vec3<N> n, k;  // index of refraction and extinction coefficient
@@ -36,8 +37,8 @@ struct Metal {
             fresnel_conductor(n.z, k.z, cosine)};
   }
 
-  // Result of scattered(): see MaterialKernel::evaluate(). REQUIRES: alpha, N.V and N.L are above 0.
-  // Directions are in the frame of Ggx.
+  // Result of scattered(): see MaterialKernel::evaluate(). Directions are in the frame of Ggx. Undefined in
+  // lanes where alpha, N.V or N.L is 0 or negative.
   struct Scattered {
     Vec3<N> pi_bsdf_cos;
     N pdf;
@@ -57,8 +58,8 @@ struct Metal {
   }
 
   // Returns the fraction of light at this cosine that is scattered between facets. MetalKernel::sample() uses
-  // it as the probability of cosine-weighted sampling. This choice bounds the sample weight without clamping
-  // the probability.
+  // this fraction as the probability of cosine-weighted sampling. This choice bounds the sample weight
+  // without clamping the probability.
   [[gnu::always_inline]] N multiple_share(const N& cosine) const {
     const N one(ScalarOf<N>(1));
     return one - albedo.at(min_first(one, cosine));

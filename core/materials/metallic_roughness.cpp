@@ -45,9 +45,9 @@ MetallicRoughness<double> MetallicRoughness<N>::read(Params& p) {
   return found;
 }
 
-// Returns 1 if `strict` is 0. Otherwise returns the maximum over five view directions, mostly grazing ones,
-// where the albedo tends to be largest. The albedo is the single scattering of the facets, plus the base
-// times the mean of 1 - F over light directions.
+// Returns 1 if `strict` is 0. Otherwise returns the largest albedo for five view directions, mostly grazing
+// ones, where the albedo tends to be largest. The albedo is the single-scattering albedo of the facets, plus
+// the base reflectance times the cosine-weighted mean of 1 - F over light directions.
 template <class N>
 double MetallicRoughness<N>::max_albedo() const {
   if (!(strict > 0)) return 1;

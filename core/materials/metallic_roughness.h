@@ -19,8 +19,8 @@ struct MetallicRoughness {
   Vec3<N> multiple;        // F_ms of Kulla and Conty; 0 if strict
   N strict;                // 1 or 0
   N alpha;                 // GGX parameter
-  GgxAlbedo<N> albedo;     // for facets that mirror all light
-  FacetAlbedo<N> grazing;  // for facets that mirror (1 - cos)^5
+  GgxAlbedo<N> albedo;     // albedo of facets that mirror all light
+  FacetAlbedo<N> grazing;  // albedo of facets that mirror the fraction (1 - cos)^5
 
   static MetallicRoughness<double> read(Params& p);
   MaterialTraits traits() const {
@@ -47,7 +47,7 @@ struct MetallicRoughness {
   }
   Vec3<N> body_transmittance(const MaskOf<N>&, const N&) const { return Vec3<N>(N(ScalarOf<N>(1))); }
 
-  // Single-scattering albedos at one cosine: `all` of facets that mirror all light, `once` of the actual
+  // Single-scattering albedos at one cosine. `all`: facets that mirror all light. `once`: the material's
   // facets.
   struct Albedos {
     N all;
@@ -58,7 +58,7 @@ struct MetallicRoughness {
     const N all = albedo.at(mu), edge = min_first(all, grazing.at(mu));
     return {all, f0 * (all - edge) + Vec3<N>(edge)};
   }
-  // Returns the fraction of light that the facets do not reflect, which reaches the base.
+  // Returns the fraction of light that passes the facets without reflection and reaches the base.
   [[gnu::always_inline]] Vec3<N> left(const Albedos& a) const {
     const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1));
     const Vec3<N> rest = Vec3<N>(one) - a.once - multiple * (one - a.all);

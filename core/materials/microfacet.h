@@ -16,15 +16,15 @@ struct Ggx {
   N alpha;  // in (0, 1]
 
   // Length of the half vector h = V + L, and the normal density D(h) = alpha^2 / (pi (sin^2 h + alpha^2 cos^2
-  // h)^2). The length is twice the cosine between the half vector and each direction. The sine is computed
-  // from the tangential components, because 1 - cos^2 cancels in float.
+  // h)^2). The length of h is twice the cosine between h and each direction. The sine is computed from the
+  // tangential components, because 1 - cos^2 cancels in float.
   struct Half {
     N length, density;
   };
   [[gnu::always_inline]] Half half(const Vec3<N>& viewer, const Vec3<N>& light) const {
     return along(viewer + light);
   }
-  // Returns the length and the normal density of an unnormalised half vector.
+  // Returns the length of an unnormalised half vector, and the normal density in its direction.
   [[gnu::always_inline]] Half along(const Vec3<N>& h) const {
     using T = ScalarOf<N>;
     using std::sqrt;
@@ -34,7 +34,8 @@ struct Ggx {
     return {sqrt(length2), alpha2 * ratio * ratio * (T(1) / std::numbers::pi_v<T>)};
   }
 
-  // Returns cos (1 + 2 Lambda), with Smith's Lambda.
+  // Returns cos (1 + 2 Lambda), where Lambda is Smith's auxiliary function for a direction at this cosine to
+  // the normal.
   [[gnu::always_inline]] N stretched(const N& cosine) const {
     using std::sqrt;
     const N alpha2 = alpha * alpha;

@@ -5,8 +5,8 @@
 
 namespace orrery {
 
-// The colour of multiple scattering is the sum over all bounces between facets, rho^2 E / (1 - rho (1 - E)).
-// E is the mean albedo of white facets.
+// Multiple scattering reflects the fraction rho^2 E / (1 - rho (1 - E)), the sum over all bounces between
+// facets. rho is the reflectance of a facet. E is the mean albedo of white facets.
 template <class N>
 OrenNayar<double> OrenNayar<N>::read(Params& p) {
   const Vec3d reflectance =

@@ -9,9 +9,9 @@
 namespace orrery {
 
 // Rough diffuse surface of facets, such as clay or plaster: the Oren-Nayar model ("Generalization of
-// Lambert's reflectance model", SIGGRAPH 1994) as improved by Fujii. Multiple scattering between facets keeps
-// the albedo of a white surface at 1 (Portsmouth, Kutz, Hill, "EON: a practical energy-preserving rough
-// diffuse BRDF", 2024). Roughness 0 is Lambertian.
+// Lambert's reflectance model", SIGGRAPH 1994) as improved by Fujii. A lobe for multiple scattering between
+// facets keeps the albedo of a white surface at 1 (Portsmouth, Kutz, Hill, "EON: a practical
+// energy-preserving rough diffuse BRDF", 2024). Roughness 0 is Lambertian.
 template <class N>
 struct OrenNayar {
   Vec3<N> reflectance;
@@ -21,13 +21,14 @@ struct OrenNayar {
 
   static OrenNayar<double> read(Params& p);
   MaterialTraits traits() const { return {.lit = true, .glossy = true, .diffuse = true}; }
-  // Uses N.L s / t <= 1 and grazing_loss() <= kFujii.
+  // Uses N.L s / t <= 1 and grazing_loss() <= kFujii: see pi_brdf().
   ReflectionLimits limits() const {
     return {reflectance, reflectance * (single_scale * (1 + roughness)) + multiple_scale * (kFujii * kFujii)};
   }
 
-  // Returns Fujii's A (1 + roughness s / t) plus multiple scattering, with s = L.V - N.L N.V and t = max(N.L,
-  // N.V) if s > 0, else 1. N.V is clamped to 0, because an interpolated normal may face away from the viewer.
+  // Returns reflectance * A (1 + roughness s / t) plus multiple scattering. s is L.V - N.L N.V, and t is
+  // max(N.L, N.V) if s > 0, else 1. N.V is clamped to [0, 1], because an interpolated normal may face away
+  // from the viewer.
   [[gnu::always_inline]] Vec3<N> pi_brdf(const N& light, const N& viewer, const N& between) const {
     const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1));
     const N v = min_first(one, max_first(zero, viewer)), l = min_first(one, light);
@@ -37,13 +38,14 @@ struct OrenNayar {
            multiple_scale * (grazing_loss(l) * grazing_loss(v));
   }
 
-  // 1/2 - 2 / (3 pi), used in A, and 2/3 - 28 / (15 pi), the mean of G / pi over the hemisphere.
+  // kFujii is 1/2 - 2 / (3 pi), used in A. kMeanG is 2/3 - 28 / (15 pi), the cosine-weighted mean of G / pi
+  // over the hemisphere.
   static constexpr double kFujii = 0.5 - 2 / (3 * std::numbers::pi);
   static constexpr double kMeanG = 2.0 / 3 - 28 / (15 * std::numbers::pi);
 
   // Returns the fraction of light that facets of a white surface do not reflect in one bounce, divided by A
-  // and the roughness: kFujii - G / pi with G = S (acos mu - S mu) + 2/3 ((S / mu) (1 - S^3) - S) and S the
-  // sine of the angle whose cosine is mu. Written with 1 - S = mu^2 / (1 + S), G needs no division by mu.
+  // and the roughness: kFujii - G / pi. G is S (acos mu - S mu) + 2/3 ((S / mu) (1 - S^3) - S), where S =
+  // sqrt(1 - mu^2). Written with 1 - S = mu^2 / (1 + S), G needs no division by mu.
   [[gnu::always_inline]] static N grazing_loss(const N& mu) {
     using T = ScalarOf<N>;
     using std::sqrt;

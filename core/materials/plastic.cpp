@@ -5,7 +5,7 @@
 
 namespace orrery {
 
-// The internal reflectance of the coat for diffuse light is 1 - (1 - E) / n^2, where E is its mean
+// The internal reflectance of the coat for diffuse light is 1 - (1 - E) / n^2, where E is the coat's mean
 // reflectance from outside.
 template <class N>
 Plastic<double> Plastic<N>::read(Params& p) {

@@ -8,8 +8,8 @@ namespace orrery {
 
 // Diffuse base under a clear coat, smooth or of microfacets. The base scatters the light that the coat
 // transmits on the way in and out (Kelemen, Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF
-// Model with Importance Sampling", Eurographics 2001). Light that the coat reflects back to the base is
-// coloured again. A white base with its coat therefore has albedo 1 at any roughness.
+// Model with Importance Sampling", Eurographics 2001). The base also scatters the light that the coat
+// reflects back to the base. A coated white base therefore has albedo 1 at any roughness.
 template <class N>
 struct Plastic {
   Vec3<N> base;  // factor of (1 - mirrored(N.V)) * (1 - mirrored(N.L))
@@ -29,7 +29,7 @@ struct Plastic {
   }
 
   N rough() const { return N(ScalarOf<N>(1)); }
-  // Returns the reflectance of ambient light, without the mirror reflection of a smooth coat.
+  // Returns the fraction of ambient light that is reflected, without the mirror reflection of a smooth coat.
   Vec3<N> ambient_reflectance(const N& cosine, Lobes lobes) const {
     const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1)), mirrors = mirrored(cosine);
     return (with_diffuse(lobes) ? base * ((one - mirrors) * (one - mean)) : Vec3<N>(zero)) +

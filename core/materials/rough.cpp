@@ -24,7 +24,7 @@ Rough<double> Rough<N>::read(Params& p) {
   return rough;
 }
 
-// A relative error epsilon of the cosine causes a relative error of shininess * epsilon in its power.
+// A relative error epsilon of the cosine becomes a relative error of shininess * epsilon in the highlight.
 template <class N>
 RoundingLimit Rough<N>::rounding() const {
   constexpr double kMaxError = 2e-3;
@@ -32,8 +32,8 @@ RoundingLimit Rough<N>::rounding() const {
   return {kMaxError / shininess, "its highlight has an exponent of " + number_text(shininess)};
 }
 
-// Returns the albedo of a highlight with exponent s and coefficient 1: 2 / (s + 1) for Phong, 8 (1 - 2^(-(s +
-// 2) / 2)) / (s + 2) for Blinn-Phong.
+// Returns the albedo of a highlight with exponent s and coefficient 1: 8 (1 - 2^(-s / 2 - 1)) / (s + 2) for
+// Blinn-Phong, and 2 / (s + 1) for Phong.
 template <class N>
 double Rough<N>::highlight_albedo() const {
   const double s = shininess;

@@ -15,7 +15,7 @@ struct Rough {
   Vec3<N> ambient, diffuse, specular;  // coefficient times colour
   N shininess;
   N phong;   // 1: Phong (mirrored light direction), 0: Blinn-Phong (half vector)
-  N chance;  // probability of sampling the highlight, with Lobes::all; 0 or 1: see read()
+  N chance;  // probability of sampling the highlight, with Lobes::all; read() sets 0 or 1
 
   static Rough<double> read(Params& p);
   MaterialTraits traits() const {
@@ -28,12 +28,13 @@ struct Rough {
   RoundingLimit rounding() const;
   double max_albedo() const { return max_component(limits().albedo); }
   ReflectionLimits limits() const;
-  // Returns the albedo of the highlight for a view along the normal, where the horizon cuts off the least.
+  // Returns the albedo of a highlight with coefficient 1 for a view along the normal, where the horizon cuts
+  // off the least.
   double highlight_albedo() const;
 
-  // Returns the base of the power that forms the highlight: a cosine in [0, 1], or 0 outside the highlight.
-  // `cosine` is N.L. The vectors are unit: the normal, toward the light, toward the viewer, and half way
-  // between light and viewer. The mirrored direction is R = 2 (N.L) N - L.
+  // Returns the cosine that is raised to the power `shininess`: R.V for Phong, N.H for Blinn-Phong, clamped
+  // to [0, 1]. R = 2 (N.L) N - L is the mirrored direction of the light, and `cosine` is N.L. All vectors are
+  // unit.
   [[gnu::always_inline]] N highlight(const Vec3<N>& normal, const Vec3<N>& light, const Vec3<N>& viewer,
                                      const Vec3<N>& half, const N& cosine) const {
     using T = ScalarOf<N>;
@@ -56,8 +57,8 @@ struct Rough {
     N pdf;
   };
   // Evaluates the lobes. REQUIRES: cosine = N.L > 0. A Phong highlight is sampled in proportion to a power of
-  // the cosine to the mirrored viewer. A Blinn-Phong highlight is sampled in proportion to a power of N.H,
-  // which the factor 1 / (4 V.H) converts to the solid angle of the light.
+  // the cosine to the mirrored viewer. A Blinn-Phong highlight is sampled in proportion to a power of N.H.
+  // The factor 1 / (4 V.H) converts that density to the solid angle of the light.
   [[gnu::always_inline]] Scattered scattered(const Vec3<N>& normal, const Vec3<N>& light,
                                              const Vec3<N>& viewer, const Vec3<N>& half, const N& cosine,
                                              Lobes lobes) const {
@@ -76,7 +77,8 @@ struct Rough {
     return found;
   }
 
-  // Samples the highlight with the density of scattered(), from u and v in [0, 1). REQUIRES: N.V > 0.
+  // Samples the highlight with the density of scattered(), from u and v in [0, 1). Undefined in lanes with
+  // N.V <= 0.
   [[gnu::always_inline]] Vec3<N> drawn_highlight(const Vec3<N>& normal, const Vec3<N>& viewer, const N& u,
                                                  const N& v) const {
     using T = ScalarOf<N>;

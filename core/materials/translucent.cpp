@@ -89,7 +89,7 @@ class TranslucentKernel final : public MaterialRecords<Translucent, T> {
   static Vec3<N> share(const Translucent<N>& sheet, const MaskOf<N>& through) {
     return select(through, sheet.transmittance, sheet.reflectance);
   }
-  // Returns the probability of sampling a transmitted direction.
+  // Returns the probability of sampling a transmitted direction with these lobes.
   static N through_chance(const Translucent<N>& sheet, Lobes lobes) {
     return lobes == Lobes::all ? sheet.through : N(T(with_non_diffuse(lobes) ? 1 : 0));
   }

@@ -10,7 +10,7 @@ namespace orrery {
 template <class N>
 struct Translucent {
   Vec3<N> reflectance, transmittance;
-  N through;  // probability of sampling a transmitted direction
+  N through;  // probability of sampling a transmitted direction, with Lobes::all
 
   static Translucent<double> read(Params& p);
   MaterialTraits traits() const {

@@ -14,7 +14,7 @@ struct Affine {
 
   Vec3<N> vector(const Vec3<N>& v) const { return x * v.x + y * v.y + z * v.z; }
   Vec3<N> point(const Vec3<N>& p) const { return vector(p) + origin; }
-  // Multiplies `v` by the transpose of the linear part. Called on the inverse map, it transforms a normal,
+  // Multiplies `v` by the transpose of the linear part. On the inverse map, this function transforms a normal
   // without normalising it.
   Vec3<N> transposed(const Vec3<N>& v) const { return {dot(x, v), dot(y, v), dot(z, v)}; }
 
@@ -32,7 +32,7 @@ inline Affined compose(const Affined& outer, const Affined& inner) {
 }
 
 // Returns the linear part divided by its largest absolute entry, so that products of three entries cannot
-// overflow. Returns `a` if the linear part is 0.
+// overflow. Sets the origin to 0. Returns `a` if the linear part is 0.
 inline Affined scaled(const Affined& a) {
   const double largest =
       std::max({max_component(abs(a.x)), max_component(abs(a.y)), max_component(abs(a.z))});
@@ -45,8 +45,8 @@ inline double scaled_determinant(const Affined& a) {
   return dot(s.x, cross(s.y, s.z));
 }
 
-// Transforms a surface normal without normalising it. Uses the cofactor matrix with the sign of the
-// determinant, which is a positive multiple of the inverse transpose.
+// Transforms a surface normal without normalising it. The cofactor matrix times the sign of the determinant
+// is a positive multiple of the inverse transpose.
 inline Vec3d transformed_normal(const Affined& a, const Vec3d& n) {
   const Affined s = scaled(a);
   const Vec3d turned = cross(s.y, s.z) * n.x + cross(s.z, s.x) * n.y + cross(s.x, s.y) * n.z;

@@ -94,8 +94,8 @@ struct BoxRay {
 // Returns the lanes whose ray may enter the box at a distance in [0, t_max]. Conservative: a ray that touches
 // the box is never missed. The sign bit of the direction selects near and far planes. A NaN (0 * infinity, a
 // ray in the plane of a face) leaves the interval unchanged. Far distances are multiplied by 1 + 4 epsilon
-// (Ize, "Robust BVH Ray Traversal", JCGT 2013). So is t_max, because a hit in the box may be as near as the
-// current hit or, after rounding, nearer.
+// (Ize, "Robust BVH Ray Traversal", JCGT 2013). t_max is multiplied by the same factor, because the near
+// distance of a box may be rounded up beyond a hit in the box.
 template <class N>
 [[gnu::always_inline]] inline MaskOf<N> enters(const BoxRay<N>& ray, const Vec3<N>& lo, const Vec3<N>& hi,
                                                const N& t_max) {

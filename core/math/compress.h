@@ -16,8 +16,8 @@ template <class T, class Abi>
   } else {
     auto bits = static_cast<unsigned>(m.__to_bitset().to_ulong());
 #if defined(ORRERY_SANITIZED) && defined(__AVX512F__)
-    // With ThreadSanitizer, GCC 12 stores 8 or 16 bits of a mask register on the stack and reads 32 there.
-    // This forces a general register, where the bits are zero-extended.
+    // With ThreadSanitizer, GCC 12 stores 8 or 16 bits of a mask register on the stack and reads 32 bits
+    // back. The empty asm forces the bits into a general register, which zero-extends them.
     asm("" : "+r"(bits));
 #endif
     return bits;

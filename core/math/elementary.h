@@ -3,9 +3,9 @@
 #include "core/math/lanes.h"
 
 // Elementary functions of scalars and lanes. Only IEEE operations are used, so every machine and vector width
-// returns the same bits. libm does not, because it selects variants by processor. The logarithm uses the
-// atanh series (|s| <= 0.172), 2^f the Taylor series (|f| <= 1/2). Both series are long enough for an error
-// below half an ulp of the type.
+// returns the same bits. libm may differ between machines, because it selects variants by processor. The
+// logarithm uses the atanh series (|s| <= 0.172), 2^f the Taylor series (|f| <= 1/2). Both series have enough
+// terms for a truncation error below half an ulp of the type.
 namespace orrery {
 
 namespace detail {
@@ -98,7 +98,8 @@ template <class N>
 }
 
 // Returns x^y for x in [0, 1] and y >= 0, with 0^0 = 1. Flushes results below the smallest normal number to
-// 0. The relative error is at most 2 y |log2 x| ulp, hence at most 2.5e-5 (float) or 4e-13 (double).
+// 0. The relative error is at most 2 y |log2 x| ulp, plus 3 ulp, and at most 2.5e-5 (float) or 4e-13
+// (double).
 template <class N>
 [[gnu::always_inline]] inline N pow_unit(const N& x, const N& y) {
   using T = ScalarOf<N>;
@@ -140,7 +141,7 @@ template <class N>
 
 // Returns the angle of the direction (x, y) from the x axis toward the y axis, in turns in [-1/2, 1/2].
 // Returns 0 for (0, 0). Halves the angle three times by atan t = 2 atan(t / (1 + sqrt(1 + t^2))), then uses
-// Taylor's series.
+// the Taylor series.
 template <class N>
 [[gnu::always_inline]] inline N direction_turns(const N& x, const N& y) {
   using T = ScalarOf<N>;
@@ -164,7 +165,7 @@ template <class N>
   return select(y < zero, N(-turns), turns);
 }
 
-// Returns direction_turns() plus 1 if it is negative: a value in [0, 1].
+// Returns the angle of direction_turns() in [0, 1]: negative angles are increased by one turn.
 template <class N>
 [[gnu::always_inline]] inline N positive_turns(const N& x, const N& y) {
   using T = ScalarOf<N>;

@@ -21,8 +21,8 @@ struct ExactDifference {
 }  // namespace detail
 
 // Returns a triangle's unit normal by the right-hand rule, or 0 if its area is 0. Accurate even for thin
-// triangles with two long, nearly parallel sides, because the side vectors are exact and their products
-// nearly exact.
+// triangles with two long, nearly parallel sides, because side vectors are computed exactly and products
+// nearly exactly.
 inline Vec3d face_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   using Difference = detail::ExactDifference;
   const std::array<Difference, 3> e{Difference(b.x, a.x), Difference(b.y, a.y), Difference(b.z, a.z)};

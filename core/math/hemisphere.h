@@ -31,8 +31,8 @@ template <class N>
   return cosine * (T(1) / std::numbers::pi_v<T>);
 }
 
-// Samples a direction about `normal` with density proportional to its cosine, from u and v in [0, 1).
-// Projects a uniform point of the unit disk onto the hemisphere (Malley's method).
+// Samples a direction about `normal` with density proportional to the cosine of the angle between them, from
+// u and v in [0, 1). Projects a uniform point of the unit disk onto the hemisphere (Malley's method).
 template <class N>
 [[gnu::always_inline]] inline Vec3<N> cosine_direction(const Vec3<N>& normal, const N& u, const N& v) {
   using std::sqrt;

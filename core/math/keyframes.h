@@ -8,7 +8,7 @@
 namespace orrery {
 
 // Keyframed value. Between two keys, the value is mix(before, after, share) with 0 < share < 1. Before the
-// first key and after the last key, it is constant.
+// first key and after the last key, the value is constant.
 template <class V>
 struct Keyframes {
   std::vector<double> times;  // seconds, ascending
@@ -33,8 +33,8 @@ struct Keyframes {
     return mix_two(values[last], values[next], (time - times[last]) / (times[next] - times[last]));
   }
 
-  // Returns the times that divide an exposure into motion segments: its start, the keys inside it, and its
-  // end.
+  // Returns the times that divide an exposure into motion segments: the start, the keys within the exposure,
+  // and the end.
   std::vector<double> moments(const Exposure& exposure) const {
     std::vector<double> all{exposure.opens};
     for (const double time : times)

@@ -12,6 +12,8 @@
 
 // SIMD lanes: several numbers of one type that are processed at once. Formulas are templates over a number
 // type N, which is either a scalar or lanes. This file contains the operations that differ between the two.
+// The functions of core/math depend only on their arguments and are thread-safe. They throw nothing except
+// std::bad_alloc.
 namespace orrery {
 
 namespace stdx = std::experimental;
@@ -44,12 +46,13 @@ struct BlockLanesOf<long double> {
 template <class T>
 using BlockLanes = typename BlockLanesOf<T>::type;
 
-// Integer as wide as T, so that masks of both are compatible.
+// Integer as wide as T, so that masks of both types are compatible.
 template <class T>
 using IndexOf = std::conditional_t<sizeof(T) == 4, std::int32_t, std::int64_t>;
 template <class T>
 using IndexLanes = stdx::rebind_simd_t<IndexOf<T>, Lanes<T>>;
 
+// Number of lanes of Lanes<T>.
 template <class T>
 inline constexpr int kWidth = static_cast<int>(Lanes<T>::size());
 
@@ -91,7 +94,7 @@ template <class T, class Abi>
   return stdx::all_of(m);
 }
 
-// Converts a mask to another element type with the same number of lanes.
+// Converts a mask to the mask type of `To`, which has the same number of lanes.
 template <class To, class T, class Abi>
 [[gnu::always_inline]] inline typename To::mask_type mask_cast(const stdx::simd_mask<T, Abi>& m) {
   if constexpr (std::is_same_v<typename To::mask_type, stdx::simd_mask<T, Abi>>)
@@ -126,8 +129,8 @@ template <class N>
   }
 }
 
-// Returns a * b - c, rounded once with FMA and twice without. Use it only in code that requires FMA, or for
-// bounds whose padding covers both results.
+// Returns a * b - c, rounded once with FMA and twice without. Use this function only in code that requires
+// FMA, or for bounds whose padding covers both results.
 template <class N>
 [[gnu::always_inline]] inline N multiply_subtract(const N& a, const N& b, const N& c) {
 #if defined(__FMA__)

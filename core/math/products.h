@@ -18,8 +18,9 @@ inline double high_half(double x) {
 
 }  // namespace detail
 
-// Returns a * b - p exactly, where p is a * b rounded. Without FMA it follows Dekker, "A floating-point
-// technique for extending the available precision", 1971. REQUIRES: neither p nor the result underflows.
+// Returns a * b - p exactly, where p is a * b rounded. Without FMA, follows Dekker, "A floating-point
+// technique for extending the available precision", 1971. REQUIRES: neither p nor the result underflows, and
+// |a|, |b| and |p| are below 2^996 (double).
 inline float product_error(float a, float b, float p) {
   return static_cast<float>(static_cast<double>(a) * static_cast<double>(b) - static_cast<double>(p));
 }

@@ -52,7 +52,7 @@ ORRERY_FUSED(__m512d, _mm512, pd)
 #undef ORRERY_REGISTER
 #undef ORRERY_FUSED
 
-// Vector type of the compiler for V if V is one register of T, otherwise void.
+// Intrinsic vector type with the bits of V if V is one register of T, otherwise void.
 template <class T, class V>
 using RawOf = typename Raw<T, sizeof(V)>::type;
 template <class T, class V>

@@ -7,8 +7,8 @@
 #include "core/math/lanes.h"
 
 // Sample positions, computed by integer operations from (seed, pixel, sample, dimension). The functions are
-// stateless, so results do not depend on the order of evaluation. `Bits` is a 32-bit scalar or lanes of 32
-// bits.
+// stateless, so results do not depend on the order of evaluation. `Bits` is a 32-bit unsigned integer or
+// lanes of such integers.
 namespace orrery {
 
 template <class N>
@@ -42,7 +42,7 @@ template <Bits32 Bits>
 // Applies Owen's nested uniform scrambling by hashing to bit-reversed numbers (Burley, "Practical Hash-based
 // Owen Scrambling", JCGT 2020, after Laine and Karras). Each bit is flipped by a hash of the lower bits. Over
 // 1000 streams, the error is 10 to 40 % lower for smooth integrands than with Vegdahl's constants or with a
-// full hash of every prefix. For edges, it is equal.
+// full hash of every prefix. For integrands with edges, the errors are equal.
 template <Bits32 Bits>
 [[gnu::always_inline]] inline Bits scramble_reversed(const Bits& reversed, const Bits& seed) {
   Bits x = reversed + seed;
@@ -55,8 +55,8 @@ template <Bits32 Bits>
 
 // Returns the bit-reversed second dimension of Sobol's sequence. The bit-reversed first dimension is the
 // index. In these two dimensions, every aligned block of 2^m indices puts one point into each elementary
-// interval of area 2^-m. Bit j is the exclusive or of the index bits i for which the binomial coefficient (i,
-// j) is odd. By Lucas's theorem, these are the i that contain all set bits of j.
+// interval of area 2^-m. Bit j of the result is the exclusive or of the index bits i for which the binomial
+// coefficient C(i,j) is odd. By Lucas's theorem, these are the i that contain all set bits of j.
 template <Bits32 Bits>
 [[gnu::always_inline]] inline Bits sobol_second_reversed(Bits x) {
   x ^= (x & 0xaaaaaaaau) >> 1;
@@ -116,7 +116,7 @@ template <Bits32 Bits>
 
 // Returns the sequence index of `sample`. Each stream has its own scrambled order, in which every aligned
 // block of 2^m samples is an aligned block of the sequence. Points of two streams are therefore independent
-// and can serve as dimensions of one integral.
+// and can serve as different dimensions of one integral.
 template <Bits32 Bits>
 [[gnu::always_inline]] inline Bits own_order(std::uint32_t sample, const Bits& stream) {
   const Bits order = mix_bits<Bits>(stream ^ 0xa511e9b3u);

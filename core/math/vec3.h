@@ -10,7 +10,7 @@
 namespace orrery {
 
 // Vector of three components of one number type: a scalar (float, double, long double) or lanes. Used for
-// points, directions and linear colours. The name of the variable states which.
+// points, directions and linear colours.
 template <class N>
 struct Vec3 {
   N x{}, y{}, z{};
@@ -108,7 +108,7 @@ template <class N>
   return {abs(a.x), abs(a.y), abs(a.z)};
 }
 
-// Returns the components of `a` where the mask is set, else those of `b`.
+// Returns the components of `a` where the mask is set, else the components of `b`.
 template <class N>
 [[gnu::always_inline]] inline Vec3<N> select(const std::type_identity_t<MaskOf<N>>& mask, const Vec3<N>& a,
                                              const Vec3<N>& b) {

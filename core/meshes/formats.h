@@ -12,8 +12,8 @@
 // Declarations shared by the readers of mesh formats.
 namespace orrery {
 
-// Reads a file of one format. `bytes` is the whole file without a byte order mark. Normals are returned as
-// stored in the file. Throws the exceptions of read_mesh().
+// Reads a file of one format. `bytes` is the whole file without a byte order mark. Normals need not have unit
+// length: read_mesh() normalizes them. Throws the exceptions of read_mesh().
 TriangleMesh read_obj(std::string_view bytes, const MeshLimits& limits);
 TriangleMesh read_ply(std::string_view bytes, const MeshLimits& limits);
 TriangleMesh read_stl(std::string_view bytes, const MeshLimits& limits);
@@ -21,7 +21,7 @@ TriangleMesh read_gltf(std::string_view bytes, const MeshLimits& limits);
 
 // Returns the number of triangles of a binary STL, or 0 for any other file. The count in the header must
 // match the file size. A text file cannot match, because its bytes would encode a count of at least 150
-// million triangles.
+// million triangles, or more than 7 GB.
 std::size_t binary_stl_triangles(std::string_view bytes);
 
 // Returns true if `word` equals the lower-case `keyword`, ignoring case.

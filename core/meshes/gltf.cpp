@@ -11,7 +11,8 @@
 namespace orrery {
 namespace {
 
-// Maximum number of placed primitives. A small file can place many, because nodes may share a mesh.
+// Maximum number of placed primitives. A small file can place many primitives, because nodes may share a
+// mesh.
 constexpr std::size_t kMaxPlaced = 250'000;
 
 // Returns true if the extension does not change geometry, or if it is supported (quantized attributes).
@@ -155,7 +156,7 @@ class SceneReader {
     return numbers;
   }
 
-  // Returns indices into the mesh's positions. Positions of this primitive begin at `first`.
+  // Returns indices into mesh_.positions. `first` is the index of the primitive's first position.
   std::vector<std::uint32_t> read_indices(const GltfValue& user, std::size_t first) {
     const GltfNumbers numbers = file_.accessor(user, "SCALAR");
     check_triangles(mesh_.triangles.size() + numbers.count / 3, limits_);
@@ -194,7 +195,7 @@ class SceneReader {
   GltfFile file_;
   const MeshLimits& limits_;
   TriangleMesh mesh_;
-  bool all_normals_ = true, all_uvs_ = true;  // true if all primitives read so far have them
+  bool all_normals_ = true, all_uvs_ = true;  // true if every primitive already read has normals or uvs
   std::size_t placed_ = 0;
 };
 

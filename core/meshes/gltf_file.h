@@ -6,7 +6,7 @@
 
 namespace orrery {
 
-// Numbers of an accessor: `count` vectors of `components` numbers. `stride` and `component_bytes` are in
+// Numbers of an accessor: `count` elements of `components` numbers. `stride` and `component_bytes` are in
 // bytes. Must not outlive its GltfFile.
 struct GltfNumbers {
   const char* data;
@@ -20,15 +20,16 @@ struct GltfNumbers {
 };
 
 // A .glb or .gltf file with its buffers. Never reads other files. Rejects external buffers. Throws InputError
-// and Cancelled. Not thread-safe: accessor() decodes buffers.
+// and Cancelled. Not thread-safe, because accessor() decodes and caches buffers.
 class GltfFile {
  public:
   explicit GltfFile(std::string_view bytes);
 
   GltfValue root() const { return {document_, ""}; }
 
-  // Returns the numbers of the accessor with index `user`. Throws InputError if an element is outside the
-  // buffer view or the type is not `type` ("SCALAR", "VEC2" or "VEC3"). Reports an invalid index at `user`.
+  // Returns the numbers of the accessor whose index is the value `user`. Throws InputError if there is no
+  // such accessor, an element is outside the buffer view, or the type is not `type` ("SCALAR", "VEC2" or
+  // "VEC3").
   GltfNumbers accessor(const GltfValue& user, std::string_view type);
 
  private:
@@ -38,7 +39,7 @@ class GltfFile {
     std::string_view bytes;
   };
 
-  // Returns the bytes of the buffer view with index `user`.
+  // view() and buffer() return the bytes of the buffer view or buffer whose index is the value `user`.
   std::string_view view(const GltfValue& user);
   std::string_view buffer(const GltfValue& user);
 

@@ -12,7 +12,7 @@ namespace orrery {
 namespace {
 
 constexpr std::size_t kMaxDepth = 32;          // levels; geometry needs 6
-constexpr std::size_t kMaxValues = 1'000'000;  // 16 to 80 bytes of memory and at least 2 bytes of text each
+constexpr std::size_t kMaxValues = 1'000'000;  // a value takes 16 to 80 bytes of memory
 
 constexpr std::string_view kTopKeys[] = {"asset",       "scene",   "scenes",
                                          "nodes",       "meshes",  "accessors",
@@ -95,8 +95,8 @@ class GltfBuilder final : public nlohmann::json_sax<nlohmann::json> {
   nlohmann::json document_;
   std::vector<nlohmann::json*> open_;  // containers from the root to the innermost
   std::string key_;                    // key of the next value
-  bool skips_next_ = false;            // the next value is skipped
-  std::size_t skipped_ = 0;            // number of open containers that are skipped
+  bool skips_next_ = false;            // true if the next value is skipped
+  std::size_t skipped_ = 0;            // number of open containers that are not stored
   std::size_t values_ = 0, error_position_ = 0;
 };
 

@@ -8,8 +8,8 @@
 
 namespace orrery {
 
-// Value of a glTF document, with its path for error messages. Must not outlive the document. The functions
-// throw InputError if the value has another type.
+// Value of a glTF document, with its path for error messages. Must not outlive the document. Each function
+// throws InputError if the value does not have the JSON type that the function needs.
 class GltfValue {
  public:
   GltfValue(const nlohmann::json& value, std::string path) : value_(&value), path_(std::move(path)) {}
@@ -36,11 +36,13 @@ class GltfValue {
   std::string path_;
 };
 
-// Returns the integer at `key` of an object, or `fallback` if the key is missing.
+// Returns the integer at `key` of an object, or `fallback` if the key is missing. Throws InputError if the
+// value is not an integer of at least 0.
 std::uint64_t integer_or(const GltfValue& object, const char* key, std::uint64_t fallback);
 
 // Parses the parts of a glTF document that geometry needs, without extras and extensions. Throws InputError
-// if the text is not a JSON object, or has more than 32 levels or 1,000,000 values. Throws Cancelled.
+// if the text is not a valid JSON object, or if it has more than 32 levels or 1,000,000 values. Throws
+// Cancelled.
 nlohmann::json parse_gltf(std::string_view text);
 
 }  // namespace orrery

@@ -5,8 +5,8 @@
 
 namespace orrery {
 
-// Returns the transform from a node to its parent: its matrix, or translation * rotation * scale. Throws
-// InputError if one of these is invalid.
+// Returns the transform from a node to its parent: the matrix of the node, or translation * rotation * scale.
+// Throws InputError if a member of the node is invalid.
 Affined transform_of(const GltfValue& node);
 
 }  // namespace orrery

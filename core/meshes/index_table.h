@@ -23,9 +23,9 @@ class IndexTable {
     return static_cast<std::uint32_t>(h);
   }
 
-  // Returns the index i of the entry with this hash for which same(i) is true. If no entry matches, adds and
-  // returns `size`, and the caller must append the entry to the list. REQUIRES: `size` is the current number
-  // of entries, below 2^31.
+  // Returns the index i of the entry with this hash for which same(i) is true. If no entry matches, adds an
+  // entry with index `size` and returns `size`. The caller must then append the entry to the list. REQUIRES:
+  // `size` is the current number of entries, below 2^31.
   template <class Same>
   std::uint32_t find_or_add(std::uint32_t hash, std::size_t size, const Same& same) {
     interruption_point();

@@ -12,7 +12,7 @@ namespace {
 constexpr std::string_view kObjWords[] = {"v", "vt", "vn", "vp", "f",      "l",      "p",
                                           "g", "o",  "s",  "mg", "usemtl", "mtllib", "cstype"};
 
-// Returns the first word that is not in a comment line, or an empty string.
+// Returns the first word that is not in a line beginning with "#", or an empty string.
 std::string_view first_word(std::string_view bytes) {
   TextReader text(bytes);
   do {
@@ -27,7 +27,7 @@ std::string_view without_byte_order_mark(std::string_view bytes) {
 }
 
 // Normalizes the normals. A normal of length 0 becomes the area-weighted mean of the face normals around its
-// vertex.
+// vertex, or (0, 0, 1) if that mean is 0.
 void finish_normals(TriangleMesh& mesh) {
   std::vector<std::size_t> missing;
   for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
@@ -45,8 +45,8 @@ void finish_normals(TriangleMesh& mesh) {
   }
   for (const std::size_t i : missing) {
     mesh.normals[i] = safe_normalize(mesh.normals[i]);
-    if (mesh.normals[i] == Vec3d())
-      mesh.normals[i] = {0, 0, 1};  // no triangle around it has area, or their normals cancel
+    // The triangles around the vertex have no area, or their normals cancel.
+    if (mesh.normals[i] == Vec3d()) mesh.normals[i] = {0, 0, 1};
   }
 }
 

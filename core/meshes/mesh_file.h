@@ -8,9 +8,11 @@
 
 #include "core/math/vec3.h"
 
+// core/meshes reads mesh files and repairs the meshes. Threads may process different meshes at the same time.
+// Functions throw InputError for invalid files, Cancelled, and std::bad_alloc.
 namespace orrery {
 
-// Triangle mesh, in the axes and units of its file. One unit is taken as one metre.
+// Triangle mesh, in the axes and units of the file. One unit is taken as one metre.
 struct TriangleMesh {
   std::vector<Vec3d> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;  // anticlockwise seen from the front
@@ -29,18 +31,19 @@ struct MeshLimits {
 enum class MeshFormat { obj, ply, stl, gltf };
 
 // Detects the format from the content: glTF and PLY by their first bytes, binary STL by its size, ASCII STL
-// and OBJ by their first word. Throws InputError if no format matches.
+// and OBJ by their first word. Throws InputError if no format matches. Throws Cancelled.
 MeshFormat mesh_format(std::string_view bytes);
 
 // Reads an OBJ, PLY (ASCII, binary of either byte order), STL (ASCII, binary) or glTF 2.0 file (.glb, or
 // .gltf with data: URIs). Detects the format from the content. Reads nothing except `bytes`. The same bytes
 // give the same mesh.
 //
-// Merges all geometry of the file into one mesh, and ignores materials. Splits polygons into fans about their
-// first corner, which is correct for convex polygons. Keeps triangles without area. Keeps normals only if all
-// vertices have normals, and uvs only if all vertices have uvs. Computes normals of length 0 from the faces
-// around the vertex. A mesh from STL has no normals and no uvs, and its corners at equal positions become one
-// vertex. Flips the v of glTF, so that (0, 0) is at the lower left.
+// Merges all geometry of the file into one mesh, and ignores materials. Splits polygons into triangle fans
+// about the first corner, which is correct only for convex polygons. Keeps triangles without area. Keeps
+// normals only if all vertices have normals, and keeps uvs only if all vertices have uvs. Replaces
+// zero-length normals with normals computed from the faces around the vertex. A mesh from STL has no normals
+// and no uvs. Corners of an STL file at equal positions become one vertex. Replaces v of glTF by 1 - v, so
+// that (0, 0) is at the lower left.
 //
 // Throws InputError (pointer "") with the place in the file, the value and the limit. Before allocating
 // memory, checks every size in the file against `limits` and the number of available bytes. Throws Cancelled.

@@ -127,7 +127,7 @@ class ObjReader {
   std::vector<Vec3d> positions_, normals_;
   std::vector<std::array<double, 2>> uvs_;
   std::vector<Corner> corners_;  // vertices of the mesh
-  IndexTable table_;             // index of corners_
+  IndexTable table_;             // finds equal corners in corners_
   std::vector<std::array<std::uint32_t, 3>> triangles_;
 };
 

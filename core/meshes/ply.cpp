@@ -86,7 +86,7 @@ class PlyReader {
     read_any_rows(element);
   }
 
-  // Reads rows without lists: all rows have the same size, and each value has a fixed offset.
+  // Reads rows of scalar properties: all rows have the same size, and each value has a fixed offset.
   void read_fixed_rows(const PlyElement& element) {
     struct Field {
       Slot slot;
@@ -128,7 +128,7 @@ class PlyReader {
     const auto number = [&] { return std::to_string(mesh_.positions.size()); };
     if (!is_position(position)) body_.fail(position_problem(position, " for vertex " + number()));
     if (!is_finite(normal) || !std::isfinite(values[kU]) || !std::isfinite(values[kV]))
-      body_.fail("values of vertex " + number() + " must be finite");
+      body_.fail("normal and texture coordinates of vertex " + number() + " must be finite");
     mesh_.positions.push_back(position);
     if (has_normals_) mesh_.normals.push_back(normal);
     if (has_uvs_) mesh_.uvs.push_back({values[kU], values[kV]});
@@ -173,7 +173,7 @@ class PlyReader {
     const double count = body_.read(body_.describe(*property.count_type));
     constexpr double kMost = 4294967295.0;  // largest uint32
     if (!(count >= 0 && count <= kMost && count == std::floor(count)))
-      body_.fail("length of a list must be an integer from 0 to 4294967295 (got " + text_of(count) + ")");
+      body_.fail("list length must be an integer from 0 to 4294967295 (got " + text_of(count) + ")");
     return static_cast<std::uint64_t>(count);
   }
   void skip_list(const PlyProperty& property) {
@@ -197,7 +197,7 @@ class PlyReader {
   const PlyHeader& header_;
   const MeshLimits& limits_;
   Body body_;
-  std::uint64_t vertices_ = 0;  // number in the header; faces may precede vertices
+  std::uint64_t vertices_ = 0;  // vertex count of the header, because faces may precede vertices
   bool has_normals_ = false, has_uvs_ = false;
   TriangleMesh mesh_;
 };

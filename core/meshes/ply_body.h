@@ -42,8 +42,8 @@ class AsciiPly {
 
   explicit AsciiPly(const PlyHeader& header) : text_(header.body) {}
   Value describe(PlyType) const { return {}; }
-  // Returns the minimum size of a value in bytes: one digit and one blank. Only the last value may lack the
-  // blank.
+  // Returns the minimum size of a value in bytes: one digit and one blank. bytes_left() adds 1, because the
+  // last value may lack the blank.
   static std::size_t min_bytes(PlyType) { return 2; }
   std::size_t bytes_left() const { return text_.rest().size() + 1; }
 

@@ -3,10 +3,12 @@
 #include <array>
 #include <string>
 
+#include "core/base/shorten.h"
+
 namespace orrery {
 namespace {
 
-constexpr std::size_t kMaxProperties = 1000;  // elements and properties; scans have about a dozen
+constexpr std::size_t kMaxProperties = 1000;  // elements plus properties; scanned meshes have about a dozen
 
 struct TypeName {
   std::string_view name;
@@ -52,7 +54,7 @@ PlyProperty read_property(TextReader& text) {
   text.word_of_line();
   const PlyType count_type = read_type(text);
   if (count_type == PlyType::float32 || count_type == PlyType::float64)
-    text.fail("length of a list must have an integer type (got float or double)");
+    text.fail("list length must have an integer type (got " + std::string(ahead.word_of_line()) + ")");
   const PlyType type = read_type(text);
   return {text.word_of_line(), type, count_type};
 }

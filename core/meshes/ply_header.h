@@ -12,6 +12,7 @@ namespace orrery {
 enum class PlyEncoding { ascii, little_endian, big_endian };
 enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
+// Returns the size of a binary value in bytes.
 std::size_t size_of(PlyType type);
 
 struct PlyProperty {
@@ -29,7 +30,7 @@ struct PlyElement {
 struct PlyHeader {
   PlyEncoding encoding;
   std::vector<PlyElement> elements;
-  TextReader body;  // at the first byte after the header
+  TextReader body;  // positioned at the first byte after the header
 };
 
 // Reads the header of a PLY file (Turk, The PLY Polygon File Format, 1994). Throws InputError with the line

@@ -48,7 +48,7 @@ struct Corners {
 };
 
 struct Facets {
-  std::vector<Vec3d> normals;   // per triangle; 0 if it has no area
+  std::vector<Vec3d> normals;   // per triangle; 0 for triangles without area
   std::vector<Vec3d> weighted;  // per corner: the normal times the angle at the corner, in radians
 
   explicit Facets(const TriangleMesh& mesh) {
@@ -67,7 +67,8 @@ struct Facets {
   }
 };
 
-// Returns the normal of a corner. If its triangle has no area, averages over all triangles around the corner.
+// Returns the normal of a corner. If the triangle of the corner has no area, averages over all triangles at
+// the position.
 Vec3d corner_normal(std::uint32_t corner, const Corners& corners, const Facets& facets, double min_cosine) {
   const Vec3d own = facets.normals[corner / 3];
   const bool flat = own == Vec3d();

@@ -29,7 +29,7 @@ class TextReader {
   double number(std::string_view name) { return parse_number(word(), name); }
 
   // Converts `word` to the nearest double, or to an integer. Throws InputError with the line number, `name`
-  // and the word if the word is not a number or out of range.
+  // and the word if the word is not a number or is out of range.
   double parse_number(std::string_view word, std::string_view name) const;
   std::int64_t integer_in(std::string_view word, std::string_view name) const;
 

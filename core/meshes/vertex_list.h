@@ -26,8 +26,8 @@ class VertexList {
  public:
   VertexList(bool with_normals, bool with_uvs) : with_normals_(with_normals), with_uvs_(with_uvs) {}
 
-  // Returns the index of `vertex` in the list, after appending it if it is new. REQUIRES: `vertex` is finite,
-  // and values that the list does not store are 0. The list has fewer than 2^31 vertices.
+  // Returns the index of `vertex` in the list. Appends the vertex if the list does not contain it. REQUIRES:
+  // `vertex` is finite, values that the list does not store are 0, and the list has fewer than 2^31 vertices.
   std::uint32_t add(const Vertex& vertex);
   std::size_t size() const { return mesh_.positions.size(); }
   // Moves the vertices out, as a mesh without triangles. The list must not be used afterwards.

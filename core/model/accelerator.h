@@ -8,8 +8,8 @@
 
 namespace orrery {
 
-// Primitive in the list that an acceleration structure is built over. An instance is one primitive. Its hits
-// report the numbers of the primitives inside the instance.
+// Primitive in the list that an acceleration structure is built over. An instance is one primitive. A hit on
+// an instance reports the number of the primitive inside the instance.
 template <class T>
 struct Primitive {
   const ShapeKernel<T>* kernel;
@@ -23,10 +23,10 @@ using PrimitiveList = std::vector<Primitive<T>>;
 struct AcceleratorFacts {
   std::size_t bytes = 0;       // memory of the structure, without the scene
   int depth = 0;               // nodes on the longest path from the root to a primitive
-  std::size_t references = 0;  // primitive references; more than primitives if cells share them
+  std::size_t references = 0;  // primitive references; exceeds the primitives if cells share some
   bool refitted = false;       // boxes were updated after primitives moved
-  // Surface area of all boxes divided by that of the primitives' boxes, relative to the same quotient after
-  // the build.
+  // Total surface area of the structure's boxes divided by the surface area of the primitives' boxes,
+  // relative to the same quotient after the build.
   double surface_area_growth = 1;
 };
 
@@ -49,8 +49,8 @@ class Accelerator {
   virtual std::unique_ptr<Accelerator> refitted(const PrimitiveList<T>& /*moved*/) const { return nullptr; }
 
   // Finds the nearest hit of every active ray of `groups`. REQUIRES: hits.t and hits.primitive are t_max and
-  // kNoPrimitive, or an earlier hit of the ray. An earlier hit is replaced only by a nearer one, or by one at
-  // the same distance with a lower primitive number.
+  // kNoPrimitive, or an earlier hit of the ray. Only a nearer hit, or a hit at the same distance with a lower
+  // primitive number, replaces an earlier hit.
   virtual void closest(const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits,
                        AcceleratorCounts& counts) const = 0;
 
@@ -76,8 +76,8 @@ struct AcceleratorCosts {
 };
 
 // Type of acceleration structure. The list passed to `build` must outlive the accelerator. Building runs on
-// the calling thread and on oneTBB workers. It throws Cancelled, and InputError if the structure would exceed
-// a limit.
+// the calling thread and on oneTBB workers. `build` throws Cancelled, and InputError if the structure would
+// exceed a limit.
 struct AcceleratorType {
   const char* name;
   const char* summary;

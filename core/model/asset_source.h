@@ -10,9 +10,9 @@
 
 namespace orrery {
 
-// Source of meshes and images that a scene refers to by name. The base class rejects every name. Scene
-// loaders may override the functions. Each function throws InputError (pointer "") if the asset is missing or
-// invalid, and may throw Cancelled. Called only by the thread that loads the scene.
+// Source of meshes and images that a scene refers to by name. The base class rejects every name. Derived
+// classes read files or look up uploaded assets. Each function throws InputError (pointer "") if the asset is
+// missing or invalid, and may throw Cancelled. Called only by the thread that loads the scene.
 class AssetSource {
  public:
   virtual ~AssetSource() = default;
@@ -40,7 +40,7 @@ struct MeshSource {
   const AssetSource& assets;
   std::size_t vertices = 0, triangles = 0;  // including those of animation keys
   bool full = false;                        // a limit was exceeded; further meshes are skipped
-  std::uint64_t pairs = 0;                  // pairs of triangles around a vertex, compared by smoothing
+  std::uint64_t pairs = 0;                  // pairs of corners compared by smoothing: see count_pairs()
 };
 
 }  // namespace orrery

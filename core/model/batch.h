@@ -20,7 +20,7 @@ struct Array {
 
   T& operator[](int i) { return values[static_cast<std::size_t>(i)]; }
   const T& operator[](int i) const { return values[static_cast<std::size_t>(i)]; }
-  // Returns lanes i, i+1, .... REQUIRES: i is a multiple of the lane count.
+  // Returns the elements from i on as lanes. REQUIRES: i is a multiple of the lane count.
   [[gnu::always_inline]] Lanes<T> at(int i) const requires std::is_floating_point_v<T> {
     return {&values[static_cast<std::size_t>(i)], stdx::vector_aligned};
   }
@@ -65,14 +65,13 @@ template <class T>
   return {&a.values[static_cast<std::size_t>(i)], stdx::vector_aligned};
 }
 
-// Registers of a batch that a stage processes. Each is stored as the index of its first ray, in ascending
-// order.
+// Registers of a batch that a stage processes. A register is stored as the index of its first ray, in
+// ascending order.
 class LaneGroups {
  public:
   LaneGroups() {}  // leaves first_ uninitialised
 
-  // Returns every register that contains one of the rays `from` to `to` - 1. REQUIRES: `from` is a multiple
-  // of `width`.
+  // Returns all registers that contain rays `from` to `to` - 1. REQUIRES: `from` is a multiple of `width`.
   static LaneGroups covering(int from, int to, int width) {
     LaneGroups all;
     for (int i = from; i < to; i += width) all.add(i);
@@ -162,9 +161,9 @@ struct SurfaceFields {
   }
 };
 
-// Nearest known hit of each ray. Initially, t is t_max and primitive is kNoPrimitive.
-// ShapeKernel::parameters() computes the other arrays once per ray after the search, because a search
-// replaces most of the hits it finds.
+// Nearest known hit of each ray. Initially, t is t_max and primitive is kNoPrimitive. find_surfaces()
+// computes the other arrays once per ray after the search, because a search replaces most of the hits that it
+// finds.
 template <class T>
 struct HitBatch {
   Array<T> t;
@@ -175,7 +174,7 @@ struct HitBatch {
 inline constexpr int kNoInstance = -1;
 
 // Returns the lanes in which the hit at t on primitive `id` replaces (best, best_id). A hit replaces a
-// farther one, or an equally near one with a higher primitive number. NaN and infinity are not hits.
+// farther hit, or an equally near hit with a higher primitive number. NaN and infinity are not hits.
 template <class N, class I>
 [[gnu::always_inline]] inline MaskOf<N> is_nearer_hit(const N& t, const I& id, const N& best,
                                                       const I& best_id) {
@@ -190,8 +189,8 @@ struct SurfaceBatch {
   Vec3Array<T> position;   // corrected to lie on the shape
   Vec3Array<T> normal;     // for shading; may be interpolated
   Vec3Array<T> geometric;  // normal of the actual surface
-  Array<T> side;           // +1: ray came from outside, -1: from inside
-  Array<T> step;           // metres along `geometric` that exceed the rounding error of the position
+  Array<T> side;           // +1: the ray came from outside, -1: from inside
+  Array<T> step;           // metres along `geometric`, larger than the rounding error of the position
   Array<IndexOf<T>> material;
   // Optional arrays: see SurfaceFields.
   Vec3Array<T> tangent;      // unit, direction of increasing u, perpendicular to the geometric normal

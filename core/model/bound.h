@@ -21,7 +21,7 @@ struct Bound {
   static Bound proved(double max, double rms) {
     return std::isfinite(max) && std::isfinite(rms) ? Bound{Kind::proved, max, rms} : unknown();
   }
-  // Returns a bound from measured pixels. They do not bound the largest error.
+  // Returns a bound from measured pixels. Measured pixels do not bound the largest error.
   static Bound audited(double rms) { return {Kind::audited, std::nullopt, rms}; }
   // Returns a bound from samples, or unknown() if `rms` is not finite. Samples do not bound the largest
   // error.

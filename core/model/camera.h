@@ -45,8 +45,8 @@ struct CameraFrame {
   LensBlades blades;
 };
 
-// Sample positions within the pixels of a tile, one per batch element, in [0, 1). Filters wider than a pixel
-// exceed this range.
+// Sample positions within the pixels of a tile, one per batch element. Positions are in [0, 1), but exceed
+// this range for filters wider than a pixel.
 struct TileSamples {
   Array<float> u, v;
 
@@ -72,12 +72,13 @@ class Camera {
   virtual const char* type() const = 0;
   // Returns true if all rays have the same direction.
   virtual bool parallel() const = 0;
-  // Returns true if rays leave in all directions. There is no focal plane then.
+  // Returns true if rays leave in all directions. Such a camera has no focal plane.
   virtual bool all_around() const { return false; }
   // Returns half the image height: in metres for parallel cameras, in radians for all-around cameras, and on
   // the plane 1 m from the eye for others. `distance` is Orbit::distance.
   virtual double half_extent(double distance) const = 0;
-  // Returns a copy with another vertical field of view, in (0, 180) degrees, or null if the type has none.
+  // Returns a copy with another vertical field of view, in (0, 180) degrees, or null if the type has no field
+  // of view.
   virtual std::unique_ptr<Camera> with_fov(double /*degrees*/) const { return nullptr; }
 
   // Generates the rays of a tile of an image of `width` x `height` pixels, one per batch element. Rays of
@@ -94,9 +95,9 @@ struct CameraType {
   std::unique_ptr<Camera> (*read)(Params&);
 };
 
-// Returns the frame of `camera` at `orbit`. The elevation is clamped to straight above and straight below.
-// There, the azimuth still defines the image orientation, because nothing is divided by the cosine of the
-// elevation. REQUIRES: eye, look_at and up are not collinear.
+// Returns the frame of `camera` at `orbit`. The elevation is clamped to straight above and straight below. At
+// both poles, the azimuth still defines the image orientation, because nothing is divided by the cosine of
+// the elevation. REQUIRES: eye, look_at and up are not collinear.
 CameraFrame frame_at(const CameraPlacement& placement, const Camera& camera, const Orbit& orbit);
 
 // Pixel width in metres across the ray: `width` at the origin of the ray, plus `spread` per metre along the

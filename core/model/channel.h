@@ -10,7 +10,7 @@ namespace orrery {
 // Values of one channel for a batch of camera rays.
 template <class T>
 struct ChannelBatch {
-  Vec3Array<T> value;  // only the components that the channel has
+  Vec3Array<T> value;  // valid only in the components of the channel
   Array<T> weight;     // 1 if the ray hit something, else 0
 };
 
@@ -33,7 +33,7 @@ struct ChannelType {
   const char* summary;
   std::vector<const char*> components;  // 1 to 3 name suffixes, such as "X", "Y", "Z"
   ChannelMean mean;
-  float nothing;         // value of a pixel in which every ray missed
+  float nothing;         // value of a pixel in which every camera ray missed
   SurfaceFields fields;  // surface fields that `record` reads
   // Sets the components of the value for the registers of `groups`.
   void (*record_float)(const FirstHits<float>&, const LaneGroups&, Vec3Array<float>&);

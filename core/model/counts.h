@@ -7,9 +7,10 @@
 
 namespace orrery {
 
-inline constexpr int kMaxRayDepth = 32;  // largest max_depth that a request may set
+inline constexpr int kMaxRayDepth = 32;  // largest max_depth that a request or scene may set
 
-// Ray counts by kind and depth. The depth of a shadow ray is that of the ray whose hit spawned it.
+// Ray counts by kind and depth. The depth of a shadow ray is the depth of the ray at whose hit the shadow ray
+// starts.
 struct RayCounts {
   using ByDepth = std::array<std::uint64_t, kMaxRayDepth + 1>;
   std::uint64_t camera = 0;
@@ -35,7 +36,7 @@ struct TraceCounts {
   RayCounts rays;
   AcceleratorCounts accelerator;
   std::uint64_t camera_hits = 0;  // camera rays that hit something
-  std::uint64_t cut_rays = 0;     // rays not traced because of their depth or weight
+  std::uint64_t cut_rays = 0;     // rays not traced because of depth, throughput or technique
 
   void add(const TraceCounts& other) {
     rays.add(other.rays);

@@ -21,8 +21,8 @@ enum class SampleSet : std::uint32_t {
 };
 inline constexpr std::uint32_t kSampleSets = 8;  // number of sets before `environment`
 
-// Random numbers of one sample of a tile. They are pure functions of (seed, frame, x, y, sample, set, depth),
-// and do not depend on tile order, threads or SIMD width.
+// Random numbers of one sample of a tile. The numbers are pure functions of (seed, frame, x, y, sample, set,
+// depth). They do not depend on tile order, threads or SIMD width.
 class Draws {
  public:
   Draws(std::uint64_t seed, const TileView& tile, int sample)
@@ -43,7 +43,7 @@ class Draws {
     return {stdx::static_simd_cast<Lanes<T>>(point.u), stdx::static_simd_cast<Lanes<T>>(point.v)};
   }
 
-  // Returns a third number, stratified together with those of two().
+  // Returns a third number for each slot, stratified together with the two numbers of two().
   template <class T>
   [[gnu::always_inline]] Lanes<T> third(SampleSet set, int depth, const IndexLanes<T>& slot) const {
     return stdx::static_simd_cast<Lanes<T>>(stratified_third(sample_, stream<T>(set, depth, slot)));
@@ -58,7 +58,7 @@ class Draws {
           pixel_of(slot));
   }
 
-  // Returns the streams that two() passes to stratified_point(). They are the same for every sample.
+  // Returns the streams that two() passes to stratified_point(). The streams are the same for every sample.
   template <class T>
   [[gnu::always_inline]] Bits<T> stream(SampleSet set, int depth, const IndexLanes<T>& slot) const {
     const std::uint32_t number =
@@ -84,7 +84,8 @@ class Draws {
   std::uint32_t seed_, frame_, first_pixel_, sample_;
 };
 
-// Random numbers of the paths of a batch. two() returns those of the register that starts at path i.
+// Random numbers of the paths of a batch. two() returns two numbers for each path of the register that starts
+// at path i.
 template <class T>
 struct PathDraws {
   const Draws& draws;

@@ -34,7 +34,7 @@ struct TileSums {
 using TileMeans = std::array<Array<float>, 3>;
 
 // Accumulation buffer of a render: sums over samples, or the pixels of an image. Several threads may store
-// different tiles at once.
+// different tiles at once. Functions that allocate throw std::bad_alloc.
 class Film {
  public:
   // Creates an empty film. REQUIRES: `channels` is empty unless `storage` is FilmStorage::sums.
@@ -43,7 +43,7 @@ class Film {
   // REQUIRES: storage() is FilmStorage::sums.
   Film copy() const;
 
-  // Returns the size of the pixel data of such a film, in bytes.
+  // Returns the size in bytes of the pixel data of a film with these arguments.
   static std::size_t bytes(int width, int height, FilmStorage storage,
                            std::span<const ChannelType* const> channels);
 
@@ -52,7 +52,8 @@ class Film {
   FilmStorage storage() const { return storage_; }
   std::span<const ChannelType* const> channels() const { return channels_; }
 
-  // Stores the sums of the tile, or means computed from them. Returns the number of non-finite pixels.
+  // Stores the sums of the tile if storage() is FilmStorage::sums, otherwise the means of the radiance.
+  // Returns the number of non-finite pixels.
   std::uint64_t put(const TileView& tile, const TileSums& sums);
   // Stores means. Returns the number of non-finite pixels. REQUIRES: storage() is not FilmStorage::sums.
   std::uint64_t put(const TileView& tile, const TileMeans& means);

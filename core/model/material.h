@@ -12,8 +12,9 @@ namespace orrery {
 
 class Params;
 
-// Perfectly specular scattering: weights of the mirrored and the refracted ray (0: no ray), and the direction
-// of the refracted ray. `filter` is the transmittance of the body between the previous surface and this one.
+// Perfectly specular scattering at each surface point: weights of the mirrored and the refracted ray (0: no
+// ray), and the unit direction of the refracted ray. `filter` is the transmittance, per channel, from the
+// origin of the incoming ray to the surface: 1 unless the ray arrives from inside the material.
 template <class T>
 struct SpecularBatch {
   Vec3Array<T> reflectance, transmittance, refracted, filter;
@@ -38,12 +39,12 @@ constexpr bool with_non_diffuse(Lobes lobes) { return lobes != Lobes::diffuse; }
 template <class T>
 struct ScatterBatch {
   Vec3Array<T> direction;  // unit, away from the surface
-  Vec3Array<T> weight;     // reflectance times cosine over density; 0: the path ends
+  Vec3Array<T> weight;     // BSDF times cosine, divided by the density; 0: nothing is scattered
   Array<T> pdf;            // density per solid angle; 0 for perfectly specular directions
 };
 
-// Scattering functions of all materials of one type. Immutable and thread-safe. REQUIRES: `lobes` includes at
-// least one lobe of the traits of these materials.
+// Scattering functions of all materials of one type. Immutable and thread-safe. REQUIRES:
+// MaterialTraits::has() of these materials returns true for the argument `Lobes`.
 template <class T>
 class MaterialKernel {
  public:
@@ -55,9 +56,9 @@ class MaterialKernel {
                        const Vec3<T>& /*ambient*/, Vec3Array<T>& /*radiance*/) const {}
 
   // Evaluates scattering from `directions.light` toward the ray's origin. `pi_bsdf_cos` is pi times the BSDF
-  // times the cosine, per channel. For a white Lambert surface, it is the cosine. `pdf` is the density per
-  // solid angle with which sample() samples the direction. Sets only the lanes with these materials. If
-  // nothing is scattered, `pdf` is 0 and `pi_bsdf_cos` is undefined.
+  // times the cosine, per channel: the cosine for a white Lambert surface. `pdf` is the density per solid
+  // angle with which sample() samples the direction. Sets only the lanes with these materials. If nothing is
+  // scattered, `pdf` is 0 and `pi_bsdf_cos` is undefined.
   virtual void evaluate(const Directions<T>&, const SurfaceBatch<T>&, const LaneGroups&, Lobes,
                         Vec3Array<T>& /*pi_bsdf_cos*/, Array<T>& /*pdf*/) const {}
 
@@ -73,17 +74,17 @@ class MaterialKernel {
 template <class T>
 using MaterialKernelPtr = std::unique_ptr<MaterialKernel<T>>;
 
-// Traits of one material, or the union over several.
+// Traits of one material, or the union of the traits of several materials.
 struct MaterialTraits {
   bool lit = false;           // scatters light from light sources: `ambient` and `evaluate` apply
   bool mirrors = false;       // `specular` may have reflectance
-  bool transmits = false;     // `specular` may have transmittance, `evaluate` may have light from behind
-  bool filters = false;       // the body may absorb light
+  bool transmits = false;     // `specular` may transmit, or `evaluate` may scatter light from behind
+  bool filters = false;       // may absorb light that travels inside an object
   bool glossy = false;        // lit, with a radiance that may depend on the view direction
   bool diffuse = false;       // has a diffuse lobe
   bool non_diffuse = false;   // has a non-diffuse lobe
-  bool emits = false;         // a surface with the material emits light
-  SurfaceFields fields = {};  // read by `evaluate` and `sample`
+  bool emits = false;         // surfaces with the material emit light
+  SurfaceFields fields = {};  // surface fields that `evaluate` and `sample` read
 
   MaterialTraits& operator|=(const MaterialTraits& other) {
     lit |= other.lit;
@@ -98,23 +99,23 @@ struct MaterialTraits {
     return *this;
   }
 
-  // Returns true if a material may have one of these lobes.
+  // Returns true if the material may have one of these lobes. Always true for Lobes::all.
   bool has(Lobes lobes) const {
     return lobes == Lobes::all || (lobes == Lobes::diffuse ? diffuse : non_diffuse);
   }
 };
 
 // Upper bounds on the light that a surface scatters, per channel, over all directions. If a material also
-// mirrors a fraction R of the light, `ambient` and `light` are bounds for R = 0, to be multiplied by 1 - R.
+// mirrors a fraction R of the light, the bounds are `ambient` * (1 - R) and `light` * (1 - R).
 struct ReflectionLimits {
-  Vec3d ambient{1.0};                                    // for ambient light
+  Vec3d ambient{1.0};                                    // reflected ambient light
   Vec3d light{std::numeric_limits<double>::infinity()};  // pi_bsdf_cos of MaterialKernel::evaluate()
-  Vec3d albedo{1.0};                                     // for light from all directions
-  bool specular = false;                                 // may mirror and refract all light
+  Vec3d albedo{1.0};                                     // reflected fraction of light from all directions
+  bool specular = false;                                 // may also mirror and refract all light
 };
 
-// All materials of one type. add() is called by one thread while the scene is loaded. It records problems in
-// `params`. The other functions are thread-safe afterwards.
+// All materials of one type. add() is called by one thread while the scene is loaded, records problems in
+// `params`, and throws Cancelled. The other functions are thread-safe afterwards.
 class MaterialSet {
  public:
   virtual ~MaterialSet() = default;
@@ -122,10 +123,11 @@ class MaterialSet {
   virtual int size() const = 0;
   virtual MaterialTraits traits() const = 0;  // union over the set
   virtual RoundingLimit rounding(int /*index*/) const { return {}; }
-  // Returns the largest fraction of light that is mirrored along the normal.
+  // Returns the fraction of light that is mirrored along the normal, for the channel with the largest
+  // fraction.
   virtual double mirrored_share(int /*index*/) const { return 0; }
   // Returns 1 if the formula cannot create energy. Otherwise returns the largest albedo over view directions
-  // and channels, to within 0.01. If it is above 1, the material creates energy.
+  // and channels, to within 0.01. An albedo above 1 means that the material creates energy.
   virtual double max_albedo(int /*index*/) const { return 1; }
   virtual ReflectionLimits limits(int /*index*/) const { return {}; }
   // Returns a kernel whose materials are numbered from `first`.

@@ -11,11 +11,11 @@ namespace orrery {
 
 // Counters of an acceleration structure. Tests are counted per ray, independently of SIMD width.
 struct AcceleratorCounts {
-  std::uint64_t node_visits = 0;  // by a ray or by a packet
+  std::uint64_t node_visits = 0;  // nodes visited; a packet counts as one visit
   std::uint64_t box_tests = 0;
   std::uint64_t primitive_tests = 0;
-  std::uint64_t predicted_occluders = 0;  // predicted occluders tested before traversal
-  std::uint64_t verified_occluders = 0;   // predicted occluders that the shadow ray hit
+  std::uint64_t predicted_occluders = 0;  // tests of shadow rays against predicted occluders
+  std::uint64_t verified_occluders = 0;   // tests of predicted occluders that hit
 
   void add(const AcceleratorCounts& other) {
     node_visits += other.node_visits;
@@ -71,7 +71,7 @@ struct SingleRay {
 template <class T>
 struct Packet {
   Ray<Lanes<T>> ray;
-  std::array<int, 3> axis;  // the same for all active rays
+  std::array<int, 3> axis;  // vector indices of x, y and z, the same for all active rays
   Shear<Lanes<T>> shear;
   // Common origin of the active rays (valid if one_origin), and the ranges of shear.x and shear.y.
   bool one_origin;
@@ -98,7 +98,7 @@ struct PacketHit {
   T limit() const { return budget < 0 ? T(-1) : farthest; }
 };
 
-// Index of a ray or packet, and of a block of primitives to test it with.
+// Index of a block of primitives, and index of the ray or packet to test against the block.
 struct RayBlockPair {
   std::uint32_t block;
   std::int32_t ray;

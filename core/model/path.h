@@ -5,22 +5,23 @@
 
 namespace orrery {
 
-// Rays of one depth. `slot` is the index of the camera ray to which the light of a ray contributes. It
+// Rays of one depth. `slot` is the index of the camera ray that receives the light of a ray. The slot
 // determines the pixel and, with the Draws of the batch, the sample.
 template <class T>
 struct PathBatch {
   RayBatch<T> rays;
-  Vec3Array<T> throughput;  // weight of the radiance of the ray in that of the camera ray, per channel
+  // Path throughput: factor from the ray's radiance to its share of the camera ray's radiance, per channel.
+  Vec3Array<T> throughput;
   Array<IndexOf<T>> slot;
   // Pixel width in metres across the ray at its origin, and its growth per metre along the ray. Filled only
-  // with SurfaceFields::footprint.
+  // if the plan requires SurfaceFields::footprint.
   Array<T> width, spread;
   // Density per solid angle with which the ray's direction was sampled, or 0 for perfectly specular
   // directions. Filled only by techniques that sample directions. Not filled for camera rays.
   Array<T> pdf;
   int depth = 0;  // 0: camera rays
 
-  // Appends the lanes of `mask`. Returns the mask as bits.
+  // Appends the rays in the lanes `mask`, with throughput `weight`. Returns the mask as bits.
   unsigned append(const MaskOf<Lanes<T>>& mask, const Ray<Lanes<T>>& ray, const Vec3<Lanes<T>>& weight,
                   const IndexLanes<T>& slots) {
     const unsigned bits = bits_of(mask);
@@ -37,14 +38,14 @@ struct PathBatch {
     rays.count = n + std::popcount(bits);
     return bits;
   }
-  // Sets the footprints of the last appended rays. `bits` is the result of their append().
+  // Sets the footprints of the rays that the last append() added. `bits` is the result of that call.
   void append_footprint(unsigned bits, const Lanes<T>& widths, const Lanes<T>& spreads) {
     const int n = rays.count - std::popcount(bits);
     compress_store(widths, bits, &width[n]);
     compress_store(spreads, bits, &spread[n]);
   }
 
-  // Sets the densities of the last appended rays. `bits` is the result of their append().
+  // Sets the densities of the rays that the last append() added. `bits` is the result of that call.
   void append_pdf(unsigned bits, const Lanes<T>& pdfs) {
     compress_store(pdfs, bits, &pdf[rays.count - std::popcount(bits)]);
   }
@@ -63,8 +64,8 @@ struct PathBatch {
     }
   }
 
-  // Appends the rays of `other`, with their footprints if `footprints`, but without `pdf`. REQUIRES: both
-  // batches together have at most kBatch rays.
+  // Appends the rays of `other` without `pdf`. Copies `width` and `spread` only if `footprints`. REQUIRES:
+  // both batches together have at most kBatch rays.
   void append(const PathBatch& other, bool footprints) {
     const auto copy = [&](auto& to, const auto& from) {
       std::copy_n(from.values.begin(), other.rays.count, to.values.begin() + rays.count);

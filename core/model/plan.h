@@ -29,14 +29,14 @@ struct Decision {
   Bound bound;
 };
 
-// Render plan: all inputs of a render in addition to the scene. `decisions` explains how they were chosen.
+// Render plan: all inputs of a render in addition to the scene. `decisions` explains the choices.
 struct Plan {
   RenderSettings asked;  // value of every option: from the request, the scene or the default
   int width = 0, height = 0, samples = 1;
   CameraFrame frame;
   std::shared_ptr<const Camera> camera;
   const TechniqueType* technique = nullptr;
-  std::vector<const char*> not_followed;  // kinds of light that the technique misses in this scene
+  std::vector<const char*> not_followed;  // light transport that is missing in this scene
   const AcceleratorType* accelerator = nullptr;
   bool try_accelerators = false;  // settle() measures whether another structure is faster
   bool double_precision = false;
@@ -45,7 +45,8 @@ struct Plan {
   int max_depth = 0;            // largest depth that is traced; camera rays have depth 0
   double min_contribution = 0;  // rays with a smaller weight in every channel are not traced
   double clamp_indirect = 0;    // maximum indirect radiance of a sample, per channel; 0: no limit
-  // Parameters that an error or time budget chooses. `samples` and `min_contribution` are then maxima.
+  // True if an error or time budget chooses the parameter. `samples` or `min_contribution` is then the
+  // maximum.
   bool free_samples = false, free_contribution = false;
   Space space = Space::linear;  // space in which errors are measured
   // Upper bound on the difference between two samples of a pixel, per channel, in radiance. Infinite if there
@@ -54,7 +55,7 @@ struct Plan {
   Vec3d cut_range;  // upper bound on the radiance error of one untraced ray; may be infinite
   View view = View::picture;
   std::uint64_t seed = 0;
-  bool reorder = false;  // similar rays are traced together
+  bool reorder = false;  // rays are sorted before traversal
   Prediction prediction = Prediction::none;
   std::vector<const ChannelType*> channels;  // in addition to radiance
   SurfaceFields fields;                      // surface fields that stages and channels read
@@ -62,9 +63,9 @@ struct Plan {
   bool direct_light = true;  // light sources are evaluated
   bool shadows = true;       // shadow rays are traced
   bool specular = true;      // mirrored and refracted rays are traced
-  bool filters = true;       // bodies absorb the light that crosses them
+  bool filters = true;       // materials absorb light inside objects
   bool lens = false;         // camera rays start on a lens
-  bool filtered = false;     // samples are distributed by the requested filter
+  bool filtered = false;     // sample positions follow the requested filter
   int reuse = 1;             // paths per group that share the light of their second vertices; a power of two
   bool constant_half = false;  // parallel view and light: the half vector is computed once per batch
   int slice = 256;             // rays per pass through the stages; does not change results
@@ -73,8 +74,8 @@ struct Plan {
   // Returns the largest possible difference between the means of the two halves of a pixel's samples, in
   // `space`.
   double halves_range() const { return space == Space::display ? 1 : sample_range; }
-  // Returns the largest amount by which the mean of one half may exceed display white, if one of `in_all`
-  // samples has radiance sample_range. Returns 0 in linear space.
+  // Returns how far the mean of one half of `in_all` samples exceeds display white if one sample has radiance
+  // sample_range and the others have 0. Returns 0 if the mean does not exceed white, and in linear space.
   double beyond_range(int in_all) const {
     return space == Space::display ? std::max(0.0, 2 * sample_range / in_all - 1) : 0;
   }

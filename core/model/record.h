@@ -52,8 +52,8 @@ Record<Lanes<T>> gather_records(const Table& table, const IndexLanes<T>& index, 
 }
 
 // Returns table[index[i]] in lane i if `mask` is set, else any valid record. REQUIRES: any(mask). Rays of one
-// register mostly hit the same primitive. A broadcast suffices then. `table` is a span or another type whose
-// operator[] returns a Record<T>.
+// register mostly hit the same primitive, whose record is broadcast without a gather. `table` is a span or
+// another type whose operator[] returns a Record<T>.
 template <template <class> class Record, class T, class Table>
 [[gnu::always_inline]] inline Record<Lanes<T>> fetch_records(const Table& table, const IndexLanes<T>& index,
                                                              const MaskOf<Lanes<T>>& mask) {

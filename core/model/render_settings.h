@@ -37,11 +37,11 @@ enum class Space { automatic, linear, display };
 inline constexpr std::array<std::string_view, 3> kSpaces{"auto", "linear", "display"};
 inline constexpr std::string_view name_of(Space space) { return kSpaces[static_cast<std::size_t>(space)]; }
 
-// Result if a budget is missed, and the names of the choices: the best image so far, or an error.
+// Result if a budget is missed, and the names of the choices. best: the best image reached. fail: an error.
 enum class OnMiss { best, fail };
 inline constexpr std::array<std::string_view, 2> kOnMisses{"best", "fail"};
 
-// Output, and the names of the choices: the image, or an error bound for each pixel.
+// Output, and the names of the choices. picture: the image. bound: an error bound for each pixel.
 enum class View { picture, bound };
 inline constexpr std::array<std::string_view, 2> kViews{"picture", "bound"};
 

@@ -19,9 +19,13 @@
 #include "core/model/rounding.h"
 #include "core/model/shape.h"
 
+// core/model contains the data types and interfaces that all stages of a render share. Scene is a scene as
+// loaded, World the same scene in one number type, Plan the resolved settings, and Film the result. Const
+// objects may be used by any number of threads. Functions throw only what their comments state, and
+// std::bad_alloc.
 namespace orrery {
 
-// Extreme value in a scene, in metres if it is a length, and the JSON Pointer of the object that has it.
+// Extreme value in a scene (lengths in metres), and the JSON Pointer of the object with this value.
 struct LocatedValue {
   double value;
   std::string where;
@@ -41,18 +45,18 @@ struct SceneFacts {
   Boundsd bounds;                                                    // bounded primitives only
   bool unbounded = false;                                            // some primitive is unbounded
   RadianceRange tree_radiance, distributed_radiance, path_radiance;  // one per kind of technique
-  Vec3d albedo;                                                      // largest albedo of a material in use
-  // The members below are inputs to the choice of the number type.
+  Vec3d albedo;                                                      // bound on the albedos of used materials
+  // The members below, except max_albedo, are inputs to the choice of the number type.
   //
   // Largest absolute coordinate, including the anchors of unbounded primitives.
   LocatedValue magnitude{0, ""};
   // Smallest diagonal of the box of a bounded primitive, and smallest distance between two parallel surfaces,
-  // of one body or of two. Infinite if there are none.
+  // of one body or of two. Infinite if the scene has none.
   LocatedValue smallest_feature{std::numeric_limits<double>::infinity(), ""},
       layer_distance{std::numeric_limits<double>::infinity(), ""};
   MirrorChain mirrors;
-  LocatedValue max_albedo{1, ""};  // largest albedo of a material in use, and its object
-  RoundingLimit rounding;          // strictest limit of all lights and materials; `reason` states where
+  LocatedValue max_albedo{1, ""};  // largest albedo above 1 and an object with it; 1 if no albedo is above 1
+  RoundingLimit rounding;          // strictest of all lights and materials; `reason` names the object
 };
 
 // Returns the total number of primitives in the sets.
@@ -130,7 +134,7 @@ struct Scene {
   std::string title, description;
   CameraPlacement placement;
   std::shared_ptr<const Camera> camera;
-  RenderSettings render;  // options that a scene may set, or their defaults
+  RenderSettings render;  // options that a scene may set; nullopt: default of the technique
   Vec3d ambient, background;
   std::shared_ptr<const Environment> environment;  // replaces the background, which is then 0; may be null
   std::vector<std::unique_ptr<ShapeSet>> shapes;
@@ -139,9 +143,9 @@ struct Scene {
   std::vector<std::unique_ptr<LightSet>> light_sets;
   std::vector<LightPlace> lights;  // in file order
   std::deque<Model> models;
-  std::vector<Instance> instances;        // their primitives are numbered after those of `shapes`
+  std::vector<Instance> instances;        // their primitives have numbers after those of `shapes`
   std::vector<std::int32_t> material_of;  // by primitive
-  std::vector<ObjectRun> object_runs;     // in ascending order; each ends where the next begins
+  std::vector<ObjectRun> object_runs;     // in ascending order; a run ends where the next run begins
   int object_count = 0;
   TimeSpan motion;
   SceneFacts facts;

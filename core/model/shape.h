@@ -54,7 +54,7 @@ class PackedPrimitives {
   virtual void occlude(RayBlockPairs pairs, const Packet<T>* packets, PacketHit<T>* hits,
                        AcceleratorCounts& counts) const = 0;
 
-  // Prefetches a block into the CPU cache. Does nothing for types that do not gain from it.
+  // Prefetches a block into the CPU cache. Does nothing for types that do not gain from prefetching.
   virtual void prefetch(std::uint32_t /*block*/) const {}
 
   virtual std::size_t bytes() const = 0;
@@ -76,8 +76,8 @@ class ShapeKernel {
   virtual ~ShapeKernel() = default;
 
   // Tests primitive `index` of this set against the rays of `groups`. A hit in (0, hits.t) replaces the
-  // previous hit. At equal t, the lower primitive number wins. `counts` includes tests inside an instance,
-  // but not the test of the primitive itself.
+  // previous hit. At equal t, the lower primitive number wins. Adds tests inside an instance to `counts`, but
+  // not the test of the primitive itself.
   virtual void closest(int index, const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits,
                        AcceleratorCounts& counts) const = 0;
 
@@ -112,7 +112,7 @@ using ShapeKernelPtr = std::shared_ptr<const ShapeKernel<T>>;
 
 // Properties of a shape type that the plan uses.
 struct ShapeTraits {
-  bool convex = false;  // convex or flat: its outside cannot shadow or reflect itself
+  bool convex = false;  // convex or flat: the outside cannot shadow or reflect itself
   bool closed = false;  // has an inside
 };
 
@@ -120,8 +120,8 @@ struct ShapeTraits {
 struct Patch {
   enum class Kind { rectangle, triangle, disk, sphere, box, cylinder } kind;
   // Rectangle: a corner and two perpendicular sides. Triangle: a corner and two sides. Disk: centre and two
-  // perpendicular radii. Sphere: centre, and the radius in a.x. Box: centre and half of its perpendicular
-  // edges. Cylinder with ends: centre, two radii and half of its axis, all perpendicular.
+  // perpendicular radii. Sphere: centre, and the radius in a.x. Box: centre and the halves of three
+  // perpendicular edges. Cylinder with ends: centre, two radii and half of the axis, all perpendicular.
   Vec3d at, a, b, c{};
 };
 
@@ -132,14 +132,14 @@ class MovingShapes {
 
   // Returns the bounds over the whole motion, valid for float and double rays. REQUIRES: the primitive moves.
   virtual Boundsd bounds(int index) const = 0;
-  // Returns a timed kernel of the moving primitives. They keep their numbers within the set, counted from
-  // `first`.
+  // Returns a timed kernel of the moving primitives. Primitive `index` of the set has the number `first` +
+  // `index`.
   virtual ShapeKernelPtr<float> kernel(float, int first) const = 0;
   virtual ShapeKernelPtr<double> kernel(double, int first) const = 0;
 };
 
-// All shapes of one type. add() is called by one thread while the scene is loaded. It records problems in
-// `params` and throws Cancelled. The other functions are thread-safe afterwards. at() and kernel() throw
+// All shapes of one type. add() is called by one thread while the scene is loaded, records problems in
+// `params`, and throws Cancelled. The other functions are thread-safe afterwards. at() and kernel() throw
 // Cancelled.
 class ShapeSet {
  public:
@@ -160,7 +160,8 @@ class ShapeSet {
   virtual bool moves(int /*index*/) const { return false; }
   // Returns the bounds of a primitive. Unbounded primitives have infinite sides.
   virtual Boundsd bounds(int index) const = 0;
-  // Bounds of the primitive over its whole motion, and the smallest diagonal of its box at any key.
+  // Bounds of a primitive over its whole motion, and the smallest diagonal of its box over all animation
+  // keys.
   struct SweptBounds {
     Boundsd box;
     double min_diagonal = std::numeric_limits<double>::infinity();

@@ -15,7 +15,8 @@ namespace orrery {
 template <class T>
 struct TraceResult {
   Vec3Array<T> radiance;
-  // Upper bound on the radiance error of untraced rays, per channel: their weight times Plan::cut_range.
+  // Upper bound on the radiance error of untraced rays, per channel: the sum of their throughputs times
+  // Plan::cut_range.
   Vec3Array<T> omitted;
   Vec3Array<T> clamped;  // radiance removed by clamping; filled only if Plan::clamp_indirect > 0
   std::vector<ChannelBatch<T>> channels;  // in the order of Plan::channels
@@ -24,8 +25,8 @@ struct TraceResult {
 // Maximum number of emission-only camera rays per sample: see Tracer::has_emission_pass().
 inline constexpr int kMaxEmissionSamples = 16;
 
-// Light transport algorithm. A tracer is not thread-safe. It keeps its batches between calls, so a thread
-// should reuse its tracer.
+// Light transport algorithm. A tracer is not thread-safe. A thread should reuse its tracer, because the
+// batches are allocated once per tracer.
 template <class T>
 class Tracer {
  public:
@@ -36,11 +37,12 @@ class Tracer {
   virtual bool trace(const RayBatch<T>& camera_rays, const Draws& draws, TraceResult<T>& out,
                      TraceCounts& counts, const Checkpoint& checkpoint = {}) = 0;
 
-  // Returns true if trace() omits directly visible emission. The caller then adds it by
+  // Returns true if trace() omits the directly visible emission and background. The caller then adds both by
   // trace_emission_only(), with separate camera rays. Emitters have the sharpest edges of an image, and
   // emission-only rays are cheap.
   virtual bool has_emission_pass() const { return false; }
-  // Adds the emission of the first hit of each camera ray, or of the background, times `share`.
+  // Adds `share` times the emission at the first hit of each camera ray, or `share` times the background if
+  // the ray misses.
   virtual void trace_emission_only(const RayBatch<T>& /*camera_rays*/, T /*share*/, TraceResult<T>& /*out*/,
                                    TraceCounts& /*counts*/) {}
 };
@@ -53,13 +55,13 @@ using TracerPtr = std::unique_ptr<Tracer<T>>;
 struct TechniqueType {
   const char* name;
   const char* summary;
-  int max_depth;                // default; a request or a scene may set another
+  int max_depth;                // default; a request or a scene may set another value
   bool secondary_rays = false;  // follows mirrored and refracted rays
   // Samples one light source and one direction per vertex. Emitting surfaces and the environment are then
   // light sources, and lenses cause defocus blur.
   bool draws_light = false;
   bool interreflects = false;                  // diffuse interreflection replaces ambient light
-  std::vector<const char*> not_followed = {};  // kinds of light that are missing in every scene
+  std::vector<const char*> not_followed = {};  // light transport missing in every scene
   TracerPtr<float> (*make_float)(const World<float>&, const Plan&);
   TracerPtr<double> (*make_double)(const World<double>&, const Plan&);
 };

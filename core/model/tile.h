@@ -24,7 +24,7 @@ constexpr TilePixel tile_pixel(int slot) {
 struct TileView {
   int x0, y0;               // first pixel, in the image; multiples of kTileSide
   int width, height;        // size of the part inside the image, 1 to kTileSide pixels
-  std::uint64_t frame = 0;  // animation frame; different frames have different samples
+  std::uint64_t frame = 0;  // animation frame; each frame has different random numbers
   int first_sample = 0, samples = 1;
 
   // Returns true if the whole tile is inside the image.

@@ -28,16 +28,16 @@ struct Geometry {
   std::vector<Materials> materials;
   // One per type, in the order of Scene::light_sets. Null for types without lights.
   std::vector<LightKernelPtr<T>> lights;
-  std::vector<Vec3<T>> emission;  // per material: see Scene; empty if nothing emits
+  std::vector<Vec3<T>> emission;  // by material: see Scene; empty if nothing emits
   // Kernel of the emitting primitives that can be sampled. Null if there are none.
   LightKernelPtr<T> emitters;
-  std::vector<IndexOf<T>> emitter_of;  // per primitive: its index in `emitters`, or -1
-  // True if other primitives emit too, or if an emitter is not sampled from some of the points that it
+  std::vector<IndexOf<T>> emitter_of;  // by primitive: index in `emitters`, or -1
+  // True if primitives outside `emitters` emit, or if an emitter is not sampled from some points that it
   // illuminates.
   bool emits_undrawn = false;
   // Contains the lights of the scene, then the emitters. Null if there are none.
   std::shared_ptr<const LightTree<T>> light_tree;
-  LightKernelPtr<T> environment;  // light 0 is the environment; null if the background is constant
+  LightKernelPtr<T> environment;  // its light 0 is Scene::environment; null if there is none
   std::vector<IndexOf<T>> material_of;
   PrimitiveList<T> primitives;
   Vec3<T> ambient, background;

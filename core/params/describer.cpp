@@ -51,7 +51,7 @@ constexpr const char* kBeyond =
 const Schema kEmptyList = Schema::array();
 const Schema kEmptyObject = Schema::object();
 
-// Returns the default of a list or map in the schema, or null if it must not be empty.
+// Returns the default of a list or map in the schema: `empty`, or null if the list or map is required.
 const Schema* if_empty_allowed(Count count, const Schema& empty) { return count.min == 0 ? &empty : nullptr; }
 
 }  // namespace

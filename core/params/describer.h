@@ -12,9 +12,9 @@ namespace orrery {
 
 using Schema = nlohmann::ordered_json;
 
-// Enumerates the choices (pick, form) of a read function, depth first. Call the function again while
-// advance() returns true. Each call selects one combination of alternatives, and every combination is
-// selected once.
+// Enumerates the combinations of alternatives that the pick() and form() calls of a read function can select,
+// depth first. The read function is called once, and again while advance() returns true. Each call selects
+// one combination, and each combination is selected once.
 class Choices {
  public:
   std::size_t choose(std::size_t alternatives) {
@@ -30,7 +30,8 @@ class Choices {
   }
 
  private:
-  std::vector<std::pair<std::size_t, std::size_t>> steps_;  // selected alternative, number of alternatives
+  // For each call of choose(), in order: selected alternative, number of alternatives.
+  std::vector<std::pair<std::size_t, std::size_t>> steps_;
   std::size_t next_ = 0;
 };
 
@@ -38,10 +39,11 @@ class Choices {
 // to the read function is a default or a placeholder.
 class Describer final : public Params {
  public:
-  // Schemas that may be used more than once are added to `definitions` ($defs).
+  // Adds the schemas of points, directions and colours to `definitions` ($defs) when they are first used.
   Describer(Choices& choices, Schema& definitions) : choices_(choices), definitions_(definitions) {}
 
-  // Returns the schema of all combinations of choices: one object, or "oneOf" several.
+  // Returns the schema of all combinations of choices: the schema of one object, or a "oneOf" with one schema
+  // for each combination.
   static Schema describe_object(const Read& read, Schema& definitions);
 
  private:
@@ -82,7 +84,8 @@ class Describer final : public Params {
   Schema required_ = Schema::array();
 };
 
-// Formats a schema with indentation. A value that fits on one line is not broken.
+// Formats a schema as JSON, indented by 2 spaces per level. A value that fits within 110 columns is written
+// on one line.
 std::string pretty(const Schema& schema);
 
 }  // namespace orrery

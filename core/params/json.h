@@ -5,7 +5,7 @@
 #include "core/params/document.h"
 
 // JSON tree of a Document, for code that handles JSON directly (responses of the service, tests). Only
-// core/params and server/ include this header. All other code reads documents through Params.
+// core/params, server/ and tests/ include this header. All other code reads documents through Params.
 
 namespace orrery {
 

@@ -7,11 +7,12 @@
 
 namespace orrery {
 
-inline constexpr double kMaxTime = 1e6;          // seconds, absolute value
-inline constexpr std::size_t kMaxKeys = 10'000;  // keyframes of one "motion" list
+inline constexpr double kMaxTime = 1e6;          // maximum absolute value of a time, seconds
+inline constexpr std::size_t kMaxKeys = 10'000;  // maximum number of keyframes in a "motion" list
 
 // Reads the list "motion" of a movable object. `read(Params&)` returns the value of one keyframe. Returns no
-// keyframes if the list is missing.
+// keyframes if the list is missing. Records a problem in `p` if times do not increase, or if there is a
+// single keyframe.
 template <class Read>
 auto read_motion(Params& p, const Read& read) {
   Keyframes<decltype(read(p))> keys;

@@ -16,7 +16,7 @@ class Names {
   // `kind` is the noun in errors: unknown material "slver" (did you mean "silver"?).
   explicit Names(std::string kind) : kind_(std::move(kind)) {}
 
-  // Returns the index of the new name. REQUIRES: `name` is not in the set.
+  // Returns the index of the new name. REQUIRES: `name` was not added before.
   std::size_t add(std::string name) {
     return index_of_.emplace(std::move(name), index_of_.size()).first->second;
   }

@@ -29,15 +29,18 @@
 // agree, provided that the function declares the same keys for all values. Alternatives must use pick() or
 // form().
 //
-// For an invalid value, the reader records a problem and returns a placeholder inside the range. Reading
-// continues, so the user sees all problems at once. Do not use a value before read_document() has returned.
+// For an invalid value, the reader records a problem and returns the default, or a placeholder inside the
+// range. Reading continues, so one InputError reports up to InputError::kMaxProblems problems. Values may be
+// placeholders until read_document() has returned. Until then, use them only in checks that call fail().
+//
+// read_document() and describe() are thread-safe.
 
 namespace orrery {
 
-inline constexpr double kMaxCoordinate = 1e12;  // metres; squared differences lose all precision above
-inline constexpr double kMinLength = 1e-12;
+inline constexpr double kMaxCoordinate = 1e12;  // maximum absolute coordinate, metres
+inline constexpr double kMinLength = 1e-12;     // range of positive(), metres
 inline constexpr double kMaxLength = 1e12;
-inline constexpr double kMaxColor = 1e6;
+inline constexpr double kMaxColor = 1e6;                   // default maximum of a colour component
 inline constexpr double kMaxInteger = 9007199254740992.0;  // 2^53; double is exact up to here
 inline constexpr std::size_t kMaxNameLength = 128;         // characters of a name in each_named()
 
@@ -62,9 +65,8 @@ struct Count {
   std::size_t max = std::numeric_limits<std::size_t>::max();
 };
 
-// Value used for a missing key. An empty Fallback makes the key required. A Fallback with a value is the
-// default, which the schema shows. derived(value) is a default that depends on other keys, which the schema
-// does not show.
+// Value used for a missing key. An empty Fallback makes the key required. The schema shows the value as the
+// default. derived(value) is a default that depends on other keys. The schema does not show it.
 template <class T>
 struct Fallback {
   std::optional<T> value;
@@ -82,14 +84,14 @@ Fallback<T> derived(T v) {
   return fallback;
 }
 
-// Type that pick() may select: its name in the document and one sentence for the schema.
+// Type that pick() may select: its name in the document, and one sentence that describes it in the schema.
 struct Choice {
   std::string_view type;
   std::string_view summary;
 };
 
-// One JSON object that is read or described. `key` must be a string literal, because only a reference to it
-// is stored. `doc` is the description in the schema. Not thread-safe.
+// One JSON object that is read or described. `key` must have static storage, as a string literal has, because
+// only a reference to it is stored. `doc` is the description in the schema. Not thread-safe.
 class Params {
  public:
   using Read = std::function<void(Params&)>;
@@ -105,7 +107,7 @@ class Params {
   double positive(std::string_view key, std::string_view doc,
                   Fallback<double> fallback = {});  // metres, kMinLength to kMaxLength
   std::int64_t integer(std::string_view key, std::string_view doc, std::int64_t min, std::int64_t max,
-                       Fallback<std::int64_t> fallback = {});  // 3.0 is an integer; |limits| <= 2^53
+                       Fallback<std::int64_t> fallback = {});  // accepts 3.0; limits within +-2^53
   bool flag(std::string_view key, std::string_view doc, Fallback<bool> fallback = {});
   std::string choice(std::string_view key, std::string_view doc, std::span<const std::string_view> options,
                      Fallback<std::string_view> fallback = {});
@@ -120,11 +122,12 @@ class Params {
                    const char* fallback = nullptr);
 
   // -- Triples of numbers --
-  Vec3d point(std::string_view key, std::string_view doc, Fallback<Vec3d> fallback = {});  // |x| <= 1e12
+  // Reads three coordinates within +-kMaxCoordinate.
+  Vec3d point(std::string_view key, std::string_view doc, Fallback<Vec3d> fallback = {});
   // Reads a non-zero vector and normalizes it. The fallback is normalized too.
   Vec3d direction(std::string_view key, std::string_view doc, Fallback<Vec3d> fallback = {});
   Vec3d color(std::string_view key, std::string_view doc, Fallback<Vec3d> fallback = {},
-              double max = kMaxColor);
+              double max = kMaxColor);  // components from 0 to `max`
   Vec3d coefficient(std::string_view key, std::string_view doc, Fallback<Vec3d> fallback = {},
                     double max = kMaxColor);  // a colour, or one number for all channels
   std::array<double, 3> numbers3(std::string_view key, std::string_view doc, const Range& range,
@@ -150,21 +153,22 @@ class Params {
                        const Read& read);  // `read` is not called if the object is missing
   void each(std::string_view key, std::string_view doc, Count count, const Read& read);
   void each_named(std::string_view key, std::string_view doc, Count count,
-                  const ReadNamed& read);  // sorted by name
+                  const ReadNamed& read);  // in byte order of the names
 
   // -- Alternatives --
   //
-  // Returns the index of the type named by `key`. If `key` is missing or its type is unknown, reports an
-  // error and returns nullopt. Unknown keys of the object are then not reported.
+  // Returns the index in `choices` of the type named by `key`. If `key` is missing or names no such type,
+  // reports an error and returns nullopt. Unknown keys of the object are then not reported.
   std::optional<std::size_t> pick(std::string_view key, std::string_view doc,
                                   std::span<const Choice> choices);
 
   // Returns the index of the key set that the object uses: form({{"base", "top"}, {"point", "axis"}}) is 0 or
-  // 1. Reports an error unless keys of exactly one set are present. No key is required if one set is empty.
-  // The keys are then read as usual. REQUIRES: the sets are disjoint.
+  // 1. Reports an error if keys of several sets are present. Reports an error if none is present, unless one
+  // set is empty. The caller then reads the keys of the selected set. REQUIRES: the sets are disjoint.
   std::size_t form(std::initializer_list<std::initializer_list<std::string_view>> key_sets);
 
-  // Returns the index in `names` of the name at `key`, e.g. the material of an object. Returns 0 on error.
+  // Returns the index in `names` of the name at `key`, e.g. the material of an object. If `key` is missing or
+  // its name is not in `names`, reports an error and returns 0.
   std::size_t reference(std::string_view key, std::string_view doc, const Names& names);
 
   // Returns the unchecked value of `key`, for another function to read, or nullopt if the key is missing.
@@ -176,7 +180,8 @@ class Params {
   // form().
   bool has(std::string_view key) const;
   // Reports that the value of `key` is invalid, e.g. eye equal to look_at. If `key` is "", the problem points
-  // to the object. Ignored if a value in this object was already invalid, since values may be placeholders.
+  // to the object. Ignored if a value in this object or in one inside it was already invalid, since the
+  // checked values may then be placeholders.
   void fail(std::string_view key, std::string detail);
   // Returns the JSON Pointer of this object or of its member `key`.
   std::string pointer(std::string_view key = "") const;
@@ -216,14 +221,14 @@ class Params {
   virtual std::string do_pointer(Key) const = 0;
 };
 
-// Reads a document. Throws InputError with up to 20 problems if it is not an object, has invalid values or
-// has unknown keys. Each problem carries a pointer from the root of the parsed text.
+// Reads a document with `read`. Throws InputError with up to 20 problems if the document is not an object,
+// has invalid values or has unknown keys. Each problem has a pointer from the root of the parsed text.
 void read_document(const Document& document, const Params::Read& read);
 
 // Returns the JSON Schema (draft 2020-12) of `read` as indented text that ends in a newline. `id` and `title`
 // become $id and title. `description` describes the whole schema. A note on conditions that a schema cannot
-// express is appended. The schema covers all checks of read_document() except fail(), reference() and the
-// bound of index_triples().
+// express is appended to it. The schema covers all checks of read_document() except calls of fail(), the
+// names known to reference(), and the bound of index_triples().
 std::string describe(std::string_view id, std::string_view title, std::string_view description,
                      const Params::Read& read);
 

@@ -37,8 +37,9 @@ std::string in_plain_words(std::string text) {
   return text;
 }
 
-// Rewrites "unexpected X; expected Y" as "must be Y (got X)". If Y is a closing bracket, the result also
-// suggests a comma, which is valid there too and is forgotten more often.
+// Rewrites "unexpected X; expected Y" as "must be Y (got X)". If Y is a closing bracket, returns "a comma or
+// Y is missing before X", because a comma is valid there too and is forgotten more often. At the end of the
+// text, only Y is reported as missing.
 std::string in_our_grammar(const std::string& reason) {
   constexpr std::string_view kUnexpected = "unexpected ", kExpected = "; expected ";
   const std::size_t split = reason.find(kExpected);
@@ -69,7 +70,7 @@ class TreeBuilder {
   bool number_unsigned(std::uint64_t value) { return place(value); }
   bool number_float(double value, const std::string&) { return place(value); }
   bool string(std::string& value) { return place(std::move(value)); }
-  bool binary(json::binary_t&) { return false; }  // not in JSON text
+  bool binary(json::binary_t&) { return false; }  // never called: JSON text has no binary values
   bool start_object(std::size_t) { return open(json::object()); }
   bool start_array(std::size_t) { return open(json::array()); }
   bool end_object() { return close(); }
@@ -95,8 +96,8 @@ class TreeBuilder {
           {next_pointer(), "must be within the range of a double (got " + in_quotes(token) + ")"});
       throw InputError(std::move(problems_));
     }
-    // `position` is the number of bytes read. The last byte read is the invalid character, or the end of the
-    // unexpected token.
+    // `position` is the number of bytes read. The last byte read is the invalid character, or the last byte
+    // of the unexpected token.
     const std::string_view what = error.what();
     const std::size_t last = position > 0 ? position - 1 : 0;
     fail(what.find(" - unexpected ") == what.npos ? last : token_start(last), reason_of(what));
@@ -158,7 +159,7 @@ class TreeBuilder {
     return level.slot;
   }
 
-  // Returns the pointer of the last value or key read. In an array, this is the last element.
+  // Returns the JSON Pointer of the value or key that was read last. In an array, this is the last element.
   std::string pointer() const {
     std::string text;
     for (const Level& level : levels_) {
@@ -172,7 +173,7 @@ class TreeBuilder {
     return text;
   }
 
-  // Returns the pointer of the next value.
+  // Returns the JSON Pointer of the value that is read next.
   std::string next_pointer() const {
     if (levels_.empty() || !levels_.back().container->is_array()) return pointer();
     const std::size_t size = levels_.back().container->size();
@@ -185,7 +186,7 @@ class TreeBuilder {
            c == '+' || c == '-' || c == '.';
   }
 
-  // Returns the start of the complete token whose last byte is at `last`.
+  // Returns the offset of the first byte of the token whose last byte is at `last`.
   std::size_t token_start(std::size_t last) const {
     if (last >= text_.size()) return text_.size();
     std::size_t first = last;

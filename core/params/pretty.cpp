@@ -17,8 +17,8 @@ std::string one_line(const Schema& value) {
   return value.is_object() ? "{" + text + "}" : "[" + text + "]";
 }
 
-// Appends a value. `indent` is the indentation of its line, and `used` is the number of columns before the
-// value.
+// Appends a value. `indent` is the indentation of its line. `used` is the number of columns that the line
+// needs besides the value: indentation, key and comma.
 void append(const Schema& value, std::size_t indent, std::size_t used, std::string& out) {
   const std::string line = one_line(value);
   if (line.size() + used <= kLineWidth || !value.is_structured()) {

@@ -24,7 +24,8 @@ class ProblemList {
   std::vector<Problem> problems_;
 };
 
-// Position of a value in its parent: a key, and an index or name if the value of the key is a list or map.
+// Place of a value in the enclosing object: a key, and an index or name if the value of the key is a list or
+// map.
 struct Location {
   std::string_view key;
   std::optional<std::size_t> index = {};
@@ -35,16 +36,16 @@ struct Location {
 // since canonical text does not distinguish them.
 std::optional<double> number_in(const nlohmann::json& value, const Range& range);
 
-// Reader of one object, on the stack of the function that reads its parent. The pointer of an error is built
-// from the chain of parents, so valid values allocate no text.
+// Reader of one object. Lives on the stack of the function that reads the enclosing object. The pointer of an
+// error is built from the chain of enclosing readers, so valid values allocate no text.
 class Reader final : public Params {
  public:
   // Reads the root. REQUIRES: json_of(document) is an object.
   Reader(const Document& document, ProblemList& problems);
   Reader(Reader& parent, const Location& location, const nlohmann::json& object);
 
-  // Reports every key that was not read. Does nothing if the type is unknown, since the valid keys are then
-  // unknown too.
+  // Reports every key that was not read. Does nothing if pick() returned nullopt, since the valid keys are
+  // then unknown.
   void finish();
 
  private:
@@ -89,7 +90,7 @@ class Reader final : public Params {
   const nlohmann::json* member(Key name) const;  // by exactly this name; null if missing
   const nlohmann::json* lookup(Key key) const;   // by present or former name; null if missing
   // Returns the list at `key`, or null if it is missing. Reports an error and returns null if a required list
-  // is missing, or if its type or size is wrong.
+  // is missing, if the value is not a list, or if the list has the wrong size.
   const nlohmann::json* find_list(Key key, Count count, std::string_view noun);
 
   // Reads a triple of numbers. Reports an error and leaves `three` unchanged if the value is invalid.
@@ -103,7 +104,8 @@ class Reader final : public Params {
   void read_inside(const nlohmann::json& value, const Location& location, const Read& read);
 
   void note(std::string pointer, std::string detail);
-  // Reports "must be `allowed` (got `got`)", with "; did you mean" and the suggestion if it is not empty.
+  // Reports "must be `allowed` (got `got`)". With a suggestion, reports "must be `allowed` (got `got`; did
+  // you mean `suggestion`?)".
   void note_value(std::string pointer, const std::string& allowed, const nlohmann::json& got,
                   const std::optional<std::string>& suggestion = {});
   // Reports that a list or map has the wrong size.
@@ -115,10 +117,10 @@ class Reader final : public Params {
   const Document& document_;
   ProblemList& problems_;
   const nlohmann::json* object_;
-  std::vector<Key> asked_;
-  std::vector<Key> excused_;  // missing keys that are already reported
-  bool broken_ = false;       // a value of this or a nested object was invalid
-  bool type_unknown_ = false;
+  std::vector<Key> asked_;     // keys that the read function declared
+  std::vector<Key> excused_;   // keys that are not reported as missing, because form() reported an error
+  bool broken_ = false;        // a value in this object or in one inside it was invalid
+  bool type_unknown_ = false;  // pick() returned nullopt
 };
 
 }  // namespace orrery

@@ -10,7 +10,7 @@
 namespace orrery {
 namespace {
 
-constexpr int kMaxSlips = 2;
+constexpr int kMaxSlips = 2;          // maximum edit distance of a suggestion
 constexpr std::size_t kMaxWord = 64;  // bytes; longer words get no suggestion
 
 std::string lower_case(std::string_view text) {
@@ -21,8 +21,8 @@ std::string lower_case(std::string_view text) {
   return lower;
 }
 
-// Returns the letters and digits of the text, in lower case and American spelling: "diffusecolor" for
-// "Diffuse_Colour".
+// Returns the text without "_", "-" and spaces, in lower case, and with "color" for "colour": "diffusecolor"
+// for "Diffuse_Colour".
 std::string plain_letters(std::string_view text) {
   std::string letters = lower_case(text);
   std::erase_if(letters, [](char c) { return c == '_' || c == '-' || c == ' '; });
@@ -30,8 +30,8 @@ std::string plain_letters(std::string_view text) {
   return letters;
 }
 
-// Words of other programs, each with keys of the same meaning in order of preference. The first key that the
-// object accepts is suggested.
+// Word of other programs, and the keys with the same meaning in order of preference. The first key that the
+// object may still contain is suggested.
 struct Synonym {
   std::string_view word;
   std::array<std::string_view, 6> keys;

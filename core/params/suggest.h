@@ -15,14 +15,17 @@ inline constexpr std::size_t kMaxCandidates = 1000;
 // adjacent characters, where no character is edited twice. Returns limit + 1 if the distance exceeds `limit`.
 int edit_distance(std::string_view a, std::string_view b, int limit);
 
-// Returns the candidate that `word` was probably meant to be, or nullopt if none is similar. Accepts, in this
-// order, a candidate within two edits (case is ignored), an abbreviation ("fov" for "fov_degrees") or the
-// reverse, and the only candidate that begins with `word` ("w" for "width").
+// Returns the candidate that `word` was probably meant to be, or nullopt if none is similar. The case of
+// `word` is ignored. Accepts, in this order:
+//  - the candidate with the smallest edit distance, at most 2, or 1 for words of up to 3 bytes;
+//  - a candidate that `word` abbreviates ("fov" for "fov_degrees"), or the reverse;
+//  - the only candidate that begins with `word` ("w" for "width").
+// Returns nullopt for words of more than 64 bytes. Candidates after the first kMaxCandidates are ignored.
 std::optional<std::string> nearest(std::string_view word, std::span<const std::string_view> candidates);
 
-// Returns the key that `word` was probably meant to be, or nullopt if none is similar. Accepts a key of the
-// same meaning (other programs use "albedo" for "kd" and "spp" for "samples"), then a key that nearest()
-// finds. REQUIRES: `keys` are declared keys that the object does not contain.
+// Returns the key that `word` was probably meant to be, or nullopt if none is similar. Prefers a key that has
+// the meaning of `word` in other programs ("kd" for "albedo", "samples" for "spp") to the result of
+// nearest(). REQUIRES: `keys` are declared keys that the object does not contain.
 std::optional<std::string> nearest_key(std::string_view word, std::span<const std::string_view> keys);
 
 // Returns ` (did you mean --radius?)` for the name "radius" and the prefix "--", or "" if `name` is nullopt.

@@ -10,8 +10,8 @@
 
 namespace orrery {
 
-// Appends the canonical text of a value (see Document::canonical). Stops soon after `limit` bytes, possibly
-// in the middle of a value, which bounds the cost of a huge value.
+// Appends the canonical text of a value (see Document::canonical). Stops soon after `out` exceeds `limit`
+// bytes, possibly in the middle of a value. The limit bounds the cost of a huge value.
 void append_canonical(const nlohmann::json& value, std::string& out,
                       std::size_t limit = std::numeric_limits<std::size_t>::max());
 
@@ -30,7 +30,8 @@ std::string choice_text(std::span<const std::string_view> words);
 // Returns "/" and the key, escaped for a JSON Pointer (RFC 6901). Long keys are shortened.
 std::string pointer_step(std::string_view key);
 
-// Formats the limits with a leading space: " from 0 to 1", " > 0", " of at least 0", or "" if there are none.
+// Formats the limits with a leading space: " from 0 to 1", " > 0", " of at least 0". Returns "" if the range
+// is unlimited.
 std::string range_text(const Range& range);
 
 // Formats the count: "at least 1", "at most 3", "3", "1 to 1024". The caller appends a noun.

@@ -85,8 +85,8 @@ int file_of_parts(const PictureFile& file) {
   return number;
 }
 
-// Gives a decoder about a tenth of the CPU time of a render thread, because a burst of uploads can start
-// dozens of decoders.
+// When CPU time is scarce, a decoder gets about a tenth of the time of a render thread, because a burst of
+// uploads can start dozens of decoders.
 constexpr int kNiceness = 10;
 
 // Decoder process. The destructor kills it if it is still running.
@@ -120,7 +120,7 @@ class Decoder {
   }
   Decoder(const Decoder&) = delete;
 
-  // Waits for the process to end. Returns its status as from waitpid().
+  // Waits for the process to end. Returns the status of waitpid().
   int wait() {
     int status = 0;
     while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
@@ -133,7 +133,7 @@ class Decoder {
   pid_t process_ = 0;
 };
 
-// Reads until `bytes` is full or the other end is closed. Returns the number of bytes read.
+// Reads until `bytes` is full or the other end is closed. Returns the number of bytes read. Throws Cancelled.
 std::size_t read_full(int from, std::span<std::byte> bytes) {
   constexpr int kLook_ms = 20;  // maximum delay until a cancelled decoder is killed
   std::size_t got = 0;

@@ -9,6 +9,11 @@
 
 #include "core/base/shorten.h"
 
+// core/pictures: image files that scenes use as environments, decoded in a separate process.
+//
+// Threads: all functions are thread-safe.
+// Errors: InputError (pointer "") for invalid files, Cancelled, std::bad_alloc, and std::system_error if the
+// operating system cannot start the decoder.
 namespace orrery {
 
 // Decoded image in linear light.
@@ -21,10 +26,10 @@ using TexelsPtr = std::shared_ptr<const Texels>;
 // Limits of an image file.
 struct PictureLimits {
   int side = 16384;                 // texels
-  std::size_t texels = 33'554'432;  // width x height; each takes 12 bytes
+  std::size_t texels = 33'554'432;  // width x height; each texel takes 12 bytes
   int channels = 4;
 
-  // Returns the error text for a size beyond the limits, or "".
+  // Returns the error text if the size or the number of channels exceeds a limit, otherwise "".
   std::string problem_of(std::uint64_t width, std::uint64_t height, int of_channels) const {
     const auto within = [&](std::uint64_t of_side) {
       return of_side >= 1 && of_side <= static_cast<std::uint64_t>(side);
@@ -40,7 +45,7 @@ struct PictureLimits {
   }
 };
 
-// Maximum value of a texel.
+// Maximum value of a channel of a texel.
 inline constexpr float kMaxTexel = 1e9f;
 
 enum class PictureFormat { exr, hdr, png, jpeg };
@@ -55,11 +60,11 @@ PictureFormat picture_format(std::string_view bytes);
 
 // Reads an OpenEXR, Radiance HDR, PNG or JPEG file. The first bytes determine the format. EXR and HDR are
 // linear. PNG and JPEG are decoded from sRGB. One channel is grey. A second or fourth channel is alpha and is
-// dropped. The result is deterministic. The file is decoded in a separate process
+// dropped. The same bytes always give the same texels. The file is decoded in a separate process
 // (core/pictures/decode_process.h).
 //
 // The size in the header is checked before decoding. Texels must be finite and in 0 to kMaxTexel. Throws
-// InputError (pointer "") with the value and the limit, Cancelled, or std::bad_alloc.
+// InputError (pointer "") with the value and the limit, and the errors of decode_in_process().
 Texels read_picture(std::string_view bytes, const PictureLimits& limits = {});
 
 }  // namespace orrery

@@ -10,8 +10,8 @@
 namespace orrery {
 namespace {
 
-constexpr int kChosenSamples = 16;
-constexpr double kSpecularShare = 0.5;  // fraction of rays that hit a specular surface, if any
+constexpr int kChosenSamples = 16;      // samples per pixel assumed if a budget may end the render early
+constexpr double kSpecularShare = 0.5;  // assumed fraction of rays that hit a specular surface
 
 double camera_rays_of(const Plan& plan) {
   const bool may_end_early = plan.free_samples || plan.asked.seconds.value_or(0) > 0;
@@ -19,9 +19,10 @@ double camera_rays_of(const Plan& plan) {
   return double(plan.width) * plan.height * samples;
 }
 
-// Assumes that 70 % of the paths survive Russian roulette at each vertex, and fewer if diffuse surfaces end
-// paths. Each vertex sends one shadow ray. The first vertex is connected to those of the other paths in its
-// reuse group. Two rays per sample search for emitters, or kMaxEmissionSamples with lens or motion blur.
+// Assumes that 70 % of the paths survive Russian roulette at each vertex. If diffuse surfaces end paths, half
+// as many survive, or none without other lobes. Each vertex sends one shadow ray. Each path has one
+// connection to each other path of its reuse group. Two rays per sample search for emitters, or
+// kMaxEmissionSamples with lens or motion blur.
 double expected_path_rays(const Scene& scene, const Plan& plan) {
   const MaterialTraits& materials = scene.facts.materials;
   const double surviving = plan.technique->interreflects || !materials.diffuse ? 0.7
@@ -42,9 +43,9 @@ double expected_tree_rays(const Scene& scene, const Plan& plan) {
   const double children = materials.transmits ? 2 : 1;
   const double most =
       plan.min_contribution > 0 ? 1 / plan.min_contribution : std::numeric_limits<double>::infinity();
-  double tree = 1;         // rays per camera ray, including itself
-  double descendants = 1;  // in one generation, if every surface were specular
-  double share = 1;        // expected fraction of `descendants`
+  double tree = 1;         // rays per camera ray, including the camera ray
+  double descendants = 1;  // rays of one generation if every surface were specular
+  double share = 1;        // expected fraction of `descendants` that exists
   const int depth = branches ? plan.max_depth : 0;
   for (int generation = 1; generation <= depth; ++generation) {
     descendants = std::min(descendants * children, most);

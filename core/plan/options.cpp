@@ -27,7 +27,7 @@ O::Names names_of(const Types& types) {
 int max_depth_of(const TechniqueType& type) { return type.max_depth; }
 O::Names technique_names() { return names_of(technique_types()); }
 O::Names channel_names() { return names_of(channel_types()); }
-// "auto", which lets the planner choose, and the names of the accelerators.
+// Returns "auto", which lets the planner choose, followed by the names of the accelerators.
 O::Names accelerator_names() {
   O::Names names = names_of(accelerator_types());
   names.insert(names.begin(), "auto");
@@ -226,8 +226,8 @@ Fallback<V> missing(const V& fallback, bool in_schema) {
   return in_schema ? Fallback<V>(fallback) : derived(fallback);
 }
 
-// Reads the value of the option's key. Returns the default if the key is missing. `in_schema`: whether the
-// schema shows that default.
+// Reads the value of the option's key. Returns the default if the key is missing. The schema shows the
+// default if `in_schema` is true.
 template <class I>
 I read(Params& p, const O& o, const O::Integer<I>& kind, bool in_schema) {
   return static_cast<I>(p.integer(o.key, o.help, kind.min, kind.max, missing(kind.fallback, in_schema)));
@@ -378,7 +378,8 @@ void read_request_options(Params& p, Section section, RenderSettings& settings) 
 
 namespace {
 
-// Returns the defaults of a technique, or those of the default technique if `technique` is nullopt.
+// Returns the default of every option for the technique, or for the default technique if `technique` is
+// nullopt.
 RenderSettings defaults_of(const std::optional<std::string>& technique) {
   RenderSettings defaults = default_settings();
   for (const TechniqueType& type : technique_types())
@@ -413,11 +414,12 @@ namespace {
 // Initial min_contribution with an error budget. It is the same for all error limits, so that a smaller limit
 // never leads to a larger value.
 constexpr double kMaxContribution = 1.0 / 16;
-// min_contribution with a time limit only: a quarter of an 8-bit code. It limits ray trees in place of the
-// depth. This costs hardly more for mirrors and less for branching glass.
+// min_contribution with a time limit alone: a quarter of an 8-bit code. It limits ray trees, because a time
+// limit sets the depth to its maximum. Compared with the default depth, mirrors take hardly more rays, and
+// glass, whose rays branch, takes fewer.
 constexpr double kTimedContribution = 0.001;
 
-// Sets every option that the budget may choose.
+// Sets the options that a budget chooses, unless they are set.
 void free_for_budget(RenderSettings& settings) {
   if (!settings.samples) settings.samples = kMaxSamples;
   if (!settings.max_depth) settings.max_depth = kMaxDepth;

@@ -15,7 +15,8 @@
 
 // Table of the render options, one row per option. The following derive from it: reader and schema of scenes
 // and requests, query parameters, flags, limits, cache key and ETag of an image, explain, statistics and
-// OpenAPI. The table is immutable and all functions are thread-safe.
+// OpenAPI. The table is immutable and all functions are thread-safe. Functions that read from Params record
+// problems in it and throw what it throws. Only the require_*() functions throw InputError themselves.
 namespace orrery {
 
 struct Scene;
@@ -72,12 +73,12 @@ struct RenderOption {
   std::string_view short_name = {};  // alias in queries and flags; may be empty
   Section section;
   Kind kind;
-  std::string_view placeholder = {};  // name of the value in help; if empty, its choices
+  std::string_view placeholder = {};  // name of the value in help, e.g. PIXELS; if empty, its choices
   std::string_view help;              // description in schemas and in help; ends with a full stop
-  bool in_scene = true;               // a scene may set it, as the default for requests
+  bool in_scene = true;               // a scene may set the option, as the default for requests
   bool changes_pixels = true;         // a different value may change the image
   // Returns the default for a technique. Null unless the default of this integer option depends on the
-  // technique. Schemas do not show it.
+  // technique. Schemas do not show such a default.
   int (*by_technique)(const TechniqueType&) = nullptr;
 
   std::string pointer() const;     // JSON Pointer in a request: "/camera/azimuth_degrees"
@@ -89,37 +90,44 @@ struct RenderOption {
   Form form() const;
 
   bool given(const RenderSettings& settings) const;
-  void copy(const RenderSettings& from, RenderSettings& to) const;  // copies a missing value too
+  // Copies the value. Removes the value of `to` if `from` has none.
+  void copy(const RenderSettings& from, RenderSettings& to) const;
   // Returns the value as JSON text. Different values have different texts. REQUIRES: given(settings).
   std::string text(const RenderSettings& settings) const;
 
-  // Read and check the value of `key` in section `p`. A key missing in a scene sets the member to the
-  // default, unless that depends on the technique. A key missing in a request leaves the member unchanged.
+  // Read and check the value of `key` in section `p`. Record a problem in `p` if the value is invalid. Throw
+  // InputError only if `p` does, because its list of problems is full. If a scene lacks the key, the member
+  // is set to the default, unless the default depends on the technique. If a request lacks the key, the
+  // member is unchanged.
   void read_scene(Params& p, RenderSettings& settings) const;
   void read_request(Params& p, RenderSettings& settings) const;
 };
 
+// Returns all options, in the order of schema and help.
 std::span<const RenderOption> render_options();
 
 // Returns the default of every option for the default technique.
 const RenderSettings& default_settings();
 
-// Read all options of a section; scenes may set only those with `in_scene`. No other code checks the ranges.
+// Read all options of a section; read_scene_options() only options with `in_scene`. Errors are those of
+// RenderOption::read_scene() and read_request(). No other code checks the ranges of options.
 void read_scene_options(Params& p, Section section, RenderSettings& settings);
 void read_request_options(Params& p, Section section, RenderSettings& settings);
 
 // Returns whether an error limit or a time limit above 0 is set.
 bool has_budget(const RenderSettings& settings);
-// Throws InputError if a budget is set. `what` names the output that does not support budgets.
+// Throws InputError if a budget is set. `what` names the output that does not support budgets, e.g. "a
+// chart".
 void require_no_budget(const RenderSettings& settings, std::string_view what);
-// Throws InputError unless the view is `picture`. `what` names the output that supports no other view.
+// Throws InputError unless the view is `picture`. `what` names the output or option that supports no other
+// view, e.g. "a chart".
 void require_picture(const RenderSettings& settings, std::string_view what);
 
 // Returns a value for every option: from the request, else from the scene, else the default. The time is
 // clamped to the scene's motion. With a budget, samples, depth, precision and min_contribution are never
-// taken from the scene. If the request omits them, samples and depth are set to their maximum, and precision
-// to double. min_contribution is then 0.001 for a time limit alone, or 1/16 for an error budget, which may
-// lower it during the render. Does not throw InputError.
+// taken from the scene. If the request omits them, samples and depth are set to their maximum, precision to
+// double, and min_contribution to 0.001 for a time limit alone or to 1/16 for an error budget. An error
+// budget may reduce this min_contribution during the render. Does not throw InputError.
 RenderSettings resolve(const Scene& scene, const RenderSettings& asked);
 
 // Returns the camera orbit. REQUIRES: the camera options are given.
@@ -129,8 +137,9 @@ Orbit orbit_of(const RenderSettings& settings);
 // Sections without options are omitted. Reading the text gives the same settings.
 std::string to_json(const RenderSettings& settings);
 
-// Returns a query string with the settings that change pixels and differ from those of the scene:
-// "max_depth=12&samples=16", or "". The query renders an identical image. REQUIRES: all settings are given.
+// Returns a query string with the settings that change pixels and differ from the settings of a request that
+// names only the technique: "max_depth=12&samples=16", or "". A request with this query renders an identical
+// image. REQUIRES: all settings are given.
 std::string query_of(const Scene& scene, const RenderSettings& settings);
 
 }  // namespace orrery

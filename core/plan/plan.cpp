@@ -26,6 +26,8 @@ auto find_type(const Types& types, const std::string& name) {
   return &*found;
 }
 
+// Maximum numbers of primitives for which the plan uses `list`, and for which settle() tries other
+// structures.
 constexpr int kFewPrimitives = 8, kMaxTries = 1024;
 
 class Planner {
@@ -56,7 +58,7 @@ class Planner {
     } else {
       plan_.cut_range = facts.tree_radiance.max_deviation(scene_.ambient);
       const bool negative = plan_.filtered && has_negative_lobes(*plan_.asked.filter);
-      if (!negative)  // untraced rays return ambient light
+      if (!negative)  // otherwise infinite; ambient light replaces untraced rays
         plan_.sample_range = max_component(largest(facts.tree_radiance.most, scene_.ambient));
       leave_out_for_trees();
     }
@@ -77,7 +79,7 @@ class Planner {
     plan_.decisions.push_back({std::move(subject), std::move(choice), std::move(reason), bound});
   }
 
-  // Returns whether a budget chooses the value of an option that the request may set.
+  // Returns whether a budget chooses the value of an option. `named` is the option's value in the request.
   template <class T>
   bool is_free(const std::optional<T>& named) const {
     return !named && has_budget(plan_.asked);
@@ -148,7 +150,7 @@ class Planner {
     if (auto turned = scene_.camera->with_fov(*plan_.asked.fov_degrees))
       plan_.camera = std::move(turned);
     else if (request_.fov_degrees)
-      decide("field of view", "ignored", "the camera of the scene has none");
+      decide("field of view", "ignored", "the camera type has no field of view");
     plan_.frame = frame_at(scene_.placement, *plan_.camera, orbit_of(plan_.asked));
     for (const std::string& name : *plan_.asked.layers) {
       plan_.channels.push_back(find_type(channel_types(), name));
@@ -156,15 +158,16 @@ class Planner {
     }
   }
 
-  // Uses the requested precision. For `auto`, chooses float if it satisfies all known rounding limits, else
-  // double.
+  // Uses the requested precision. For `auto`, chooses double if the technique models a lens whose aperture
+  // radius exceeds the focus distance, or if the epsilon of float exceeds rounding_limit(). Else chooses
+  // float.
   void choose_precision() {
     const Precision asked = *plan_.asked.precision;
     if (asked != Precision::automatic) {
       plan_.double_precision = asked == Precision::double_precision;
       return decide("precision", precision_name(plan_.double_precision),
                     is_free(request_.precision)
-                        ? "the error of float is not bounded, and a budget needs a bound"
+                        ? "single-precision rounding error has no proven bound, and a budget needs one"
                         : "as specified",
                     rounding_bound());
     }
@@ -225,15 +228,14 @@ class Planner {
         any_light([](const LightSet& lights, int) { return lights.traits().parallel; });
     plan_.constant_half = parallel_light && plan_.camera->parallel();
     if (plan_.constant_half)
-      decide("half vector", "computed once",
-             "view and light have constant directions, so it is the same everywhere");
+      decide("half vector", "computed once", "the directions to viewer and light are constant");
     plan_.shadows = !lonely_convex() || scene_.facts.materials.transmits;
     decide("shadows", plan_.shadows ? "traced" : "none",
            plan_.shadows ? "objects may block light"
                          : "the only object is convex and seen from outside: nothing blocks its light");
   }
 
-  // Reports scene features that only distributed and path render.
+  // Adds a decision for each scene feature that only the techniques distributed and path model.
   void leave_out_for_trees() {
     const std::string only =
         std::string(plan_.technique->name) + " does not model it; distributed and path do";
@@ -243,7 +245,7 @@ class Planner {
     if (scene_.environment)
       decide("light of the environment", "visible, but illuminates no surface", only, Bound::unknown());
     if (any_light([](const LightSet& lights, int index) { return lights.extended(index); }))
-      decide("extent of lights", "ignored: one point or direction each", only, Bound::unknown());
+      decide("extent of lights", "ignored: each light has one point or direction", only, Bound::unknown());
   }
 
   void choose_paths() {
@@ -256,7 +258,8 @@ class Planner {
       decide("indirect light clamp", "at " + number_text(plan_.clamp_indirect),
              "as specified; the image reports the removed light", Bound::unknown());
     if (plan_.technique->interreflects) {
-      if (scene_.ambient != Vec3d(0)) decide("ambient light", "ignored", "surfaces light each other instead");
+      if (scene_.ambient != Vec3d(0))
+        decide("ambient light", "ignored", "replaced by light that surfaces reflect");
       choose_reuse();
     } else if (scene_.facts.materials.diffuse) {
       decide("diffuse interreflection", scene_.ambient == Vec3d(0) ? "none" : "ambient light instead",
@@ -277,7 +280,7 @@ class Planner {
   void choose_reuse() {
     const bool shares = plan_.max_depth >= 2 && scene_.facts.materials.lit && plan_.shutter == 0;
     plan_.reuse = shares ? static_cast<int>(std::bit_floor(static_cast<unsigned>(*plan_.asked.reuse)))
-                         : 1;  // must divide the size of a tile
+                         : 1;  // a power of two, because it must divide the pixels of a tile
     decide("path reuse", plan_.reuse > 1 ? "groups of " + std::to_string(plan_.reuse) : "none",
            plan_.reuse > 1     ? "connections to vertices of other paths cost less than new paths"
            : shares            ? "as specified"
@@ -296,7 +299,7 @@ class Planner {
     if (!plan_.technique->secondary_rays) {
       plan_.max_depth = 0;
       return decide("reflected and refracted rays", "none",
-                    std::string(plan_.technique->name) + " traces none", Bound::unknown());
+                    std::string(plan_.technique->name) + " does not trace them", Bound::unknown());
     }
     if (!used.transmits) decide("refracted rays", "none", "no material in use is transparent");
     if (!plan_.filters) decide("absorption inside objects", "none", "no material in use absorbs light");
@@ -315,11 +318,12 @@ class Planner {
 
   std::string contribution_reason() const {
     if (plan_.free_contribution) return "chosen by the error budget";
-    return is_free(request_.min_contribution) ? "a quarter of an 8-bit code" : "as specified";
+    return is_free(request_.min_contribution) ? "default with a time limit: a quarter of an 8-bit code"
+                                              : "as specified";
   }
 
-  // Returns an a-priori bound on the light of untraced rays with this total weight. The bound measured during
-  // the render is tighter.
+  // Returns an a-priori bound on the light of untraced rays with this total weight. The certificate of the
+  // rendered image has a tighter bound.
   Bound cut_bound(double weight) const {
     const double radiance = weight * max_component(plan_.cut_range);
     const double most = plan_.space == Space::display ? encode_srgb(radiance) : radiance;
@@ -334,8 +338,9 @@ class Planner {
     });
   }
 
-  // Returns whether the scene is a single convex primitive that cannot contain the eye: an open one, or a
-  // closed one whose bounds exclude the eye.
+  // Returns whether the scene is a single convex primitive that cannot contain the eye: an open primitive, or
+  // a closed one whose bounds exclude the eye. The rays of a parallel camera may start inside a closed
+  // primitive.
   bool lonely_convex() const {
     if (scene_.primitive_count() != 1) return false;
     for (const auto& shapes : scene_.shapes) {
@@ -367,7 +372,8 @@ RenderSettings settings_of(const Plan& plan) {
   RenderSettings settings = plan.asked;
   settings.accelerator = plan.accelerator->name;
   settings.precision = plan.double_precision ? Precision::double_precision : Precision::single_precision;
-  // The plan may have reduced the depth because of this view.
+  // The plan may have reduced the depth to 1 because of the position of the eye. The settings keep the
+  // requested depth.
   settings.max_depth = plan.max_depth == 0 ? 0 : *plan.asked.max_depth;
   settings.min_contribution = plan.min_contribution;
   return settings;

@@ -8,10 +8,11 @@
 namespace orrery {
 namespace {
 
-constexpr double kRoundings = 8;      // error of a hit / (epsilon x largest coordinate)
+constexpr double kRoundings = 8;      // assumed error of a hit / (epsilon x largest coordinate)
 constexpr double kMaxOfLength = 0.1;  // allowed error of a hit / smallest visible length
-constexpr double kMaxTurn = 0.02;     // radians, allowed error of a mirrored ray's direction
-// Smallest length in metres for which the cube of a length a hundred times smaller is a normal float.
+constexpr double kMaxTurn = 0.02;     // allowed error of a mirrored ray's direction, radians
+// Minimum size of features in metres for float. The cube of a hundredth of this length is still a normal
+// float.
 constexpr double kMinLengthInFloat = 1e-10;
 
 std::string metres(double x) { return number_text(x) + " m"; }
@@ -50,8 +51,8 @@ class Limits {
   }
 
   // Returns the width of a pixel in metres at the bounding box of the scene, or at look_at if that is nearer.
-  // The distance to the box is at least 1/16 of its diagonal. Parallel cameras have the same width
-  // everywhere.
+  // The distance to the box counts as at least 1/16 of its diagonal, because the eye may be inside. Parallel
+  // cameras have the same pixel width at any distance.
   double footprint() const {
     const double pixel = 2 * plan_.frame.half_extent / plan_.height;
     if (plan_.camera->parallel()) return pixel;

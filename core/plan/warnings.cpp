@@ -13,8 +13,8 @@
 namespace orrery {
 namespace {
 
-// Maximum numbers of primitives examined, in all and with bounds around the eye. Warnings then take
-// milliseconds for any scene.
+// Maximum numbers of primitives that one warning examines: in all, and with bounds that contain the eye. With
+// these limits, all warnings take milliseconds for any scene.
 constexpr int kMaxPrimitives = 20'000, kMaxAround = 8;
 
 constexpr double kMaxReflected = 1.005;  // accepted reflectance, with a margin for rounding
@@ -25,7 +25,7 @@ std::string percents(double share) {
   return text;
 }
 
-// Returns whether every surface is black.
+// Returns whether no light can reach the eye from any surface.
 bool is_unlit(const Scene& scene, const Plan& plan) {
   const MaterialTraits& used = scene.facts.materials;
   const bool surrounded = scene.background != Vec3d(0) || scene.environment;
@@ -78,8 +78,8 @@ class ShapesAt {
   const ShapeSet& shapes_;
 };
 
-// Calls visit(shapes of one set, world_from_shapes, materials of these primitives) for the scene's own shapes
-// and for those of each instance. Stops and returns true as soon as one call returns true.
+// Calls visit(shapes of one set, world_from_shapes, materials of these primitives) for each set of the scene
+// and of each instance. Stops and returns true once a call returns true.
 template <class Visit>
 bool any_shapes(const Scene& scene, double time, const Visit& visit) {
   int first = 0;
@@ -101,8 +101,8 @@ bool any_shapes(const Scene& scene, double time, const Visit& visit) {
   return false;
 }
 
-// Returns whether the bounds of all primitives are outside the view. Returns false if there are more than
-// kMaxPrimitives.
+// Returns whether the bounds of all primitives are outside the view. Returns false if the shutter is open for
+// longer than an instant, or if there are more than kMaxPrimitives primitives.
 bool nothing_in_view(const Scene& scene, const Plan& plan) {
   if (plan.shutter > 0) return false;  // motion into the view is not examined
   const View view(plan);
@@ -191,8 +191,9 @@ bool overlap(const Boundsd& a, const Boundsd& b) {
          b.lo.z <= a.hi.z;
 }
 
-// Returns whether several primitives overlap these bounds, i.e. any besides the primitive that has them. Also
-// returns true after kMaxPrimitives.
+// Returns whether at least two primitives have bounds that overlap `bounds`: the primitive that `bounds`
+// belongs to, and another one. Unbounded primitives overlap all bounds. Also returns true if the scene has
+// more than kMaxPrimitives primitives.
 bool holds_others(const Scene& scene, const Plan& plan, const Boundsd& bounds) {
   int overlapping = 0, seen = 0;
   return any_shapes(scene, plan.time, [&](const ShapesAt& shapes, const Affined& world, const auto*) {
@@ -205,8 +206,10 @@ bool holds_others(const Scene& scene, const Plan& plan, const Boundsd& bounds) {
   });
 }
 
-// Returns whether the eye is inside a closed opaque shape that hides all lights and contains nothing visible.
-// Returns false after kMaxPrimitives primitives, and after kMaxAround whose bounds contain the eye.
+// Returns whether the eye is inside a closed opaque shape without emission that hides all light sources. If
+// the scene has ambient light or emission, the shape must also contain no other primitive. Examines at most
+// kMaxPrimitives primitives of closed shapes, and at most kMaxAround opaque ones whose bounds contain the
+// eye.
 bool is_enclosed(const Scene& scene, const Plan& plan) {
   const bool glows = scene.ambient != Vec3d(0) || scene.facts.materials.emits;
   int seen = 0, around = 0;
@@ -236,8 +239,8 @@ bool is_enclosed(const Scene& scene, const Plan& plan) {
   return enclosed;
 }
 
-// Returns the first smooth primitive, i.e. one with a specular lobe, or -1. Examines the first
-// kMaxPrimitives.
+// Returns the number of the first primitive whose material has a specular lobe, or -1 if the first
+// kMaxPrimitives primitives have none.
 int smooth_primitive(const Scene& scene) {
   std::vector<char> smooth;  // indexed by material
   for (const auto& set : scene.materials) {
@@ -251,9 +254,9 @@ int smooth_primitive(const Scene& scene) {
   return -1;
 }
 
-// Returns a warning about the first light that no sampled direction can hit, if there is a smooth surface.
-// Paths from the light by way of that surface to a lit surface have probability 0. `detail` is empty if there
-// is nothing to warn about.
+// Returns a warning about the first light that no sampled direction can hit. Its caustics are lost: a path
+// that reaches the light by way of a specular surface has probability 0. `detail` is empty unless
+// loses_caustics() is true; see there for the conditions.
 Problem lost_caustic(const Scene& scene, const Plan& plan) {
   if (!plan.technique->interreflects || !scene.facts.materials.lit || plan.max_depth < 2) return {};
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {

@@ -20,7 +20,7 @@ class EmitterList {
   std::vector<LightBounds> find() {
     for (const auto& shapes : scene_.shapes) {
       const auto last = primitive_ + static_cast<std::size_t>(shapes->size());
-      if (skip_to_emitter(last)) {  // a set without emitters need not be posed
+      if (skip_to_emitter(last)) {  // skips at() for sets without emitters
         const auto posed = shapes->at(exposure_.opens);
         add(*shapes, posed ? *posed : *shapes, last, nullptr);
       }
@@ -50,7 +50,7 @@ class EmitterList {
     return scene_.emission[static_cast<std::size_t>(scene_.material_of[primitive])];
   }
 
-  // Advances primitive_ to the next emitting primitive. Returns false if none precedes `last`.
+  // Advances primitive_ to the next emitting primitive. Returns false if there is none before `last`.
   bool skip_to_emitter(std::size_t last) {
     while (primitive_ < last && radiance_of(primitive_) == Vec3d(0)) interruption_point(++primitive_);
     return primitive_ < last;
@@ -66,8 +66,8 @@ class EmitterList {
     return count <= most;
   }
 
-  // Adds the emitters of a set, from primitive_ to `last` - 1. `now` is the set at the start of the exposure.
-  // world_from_model is null if the set is not part of an instance.
+  // Adds the emitters of a set, from primitive_ to `last` - 1. `now` contains the shapes at the start of the
+  // exposure. world_from_model is null if the set is not part of an instance.
   void add(const ShapeSet& shapes, const ShapeSet& now, std::size_t last, const Affined* world_from_model) {
     for (int i = now.size() - static_cast<int>(last - primitive_); primitive_ < last; ++i, ++primitive_) {
       interruption_point(primitive_);
@@ -94,8 +94,8 @@ class EmitterList {
     if (emitter.is_solid() && holds_all(now.bounds(index))) return {};
     return emitter;
   }
-  // Returns true if the box contains the whole scene. A solid with this box is then seen from inside, from
-  // where it is not sampled.
+  // Returns true if the scene has several primitives, all bounded, and the box contains them. A solid with
+  // this box surrounds all other primitives, and a SolidEmitter cannot be sampled from inside.
   bool holds_all(const Boundsd& box) const {
     const Boundsd& all = scene_.facts.bounds;
     return scene_.material_of.size() > 1 && !scene_.facts.unbounded && box.contains(all.lo) &&

@@ -7,15 +7,15 @@
 
 namespace orrery {
 
-// Maximum number of emitting primitives of instances that are sampled. Sorting more of them takes longer than
-// sampling saves.
+// Maximum number of emitting primitives in instances for which light sampling is used. Building the light
+// tree over more primitives takes longer than light sampling saves.
 inline constexpr std::size_t kMaxInstancedEmitters = std::size_t{1} << 16;
 
-// Adds the emission of materials, and the emitting surfaces that are sampled, at the start of the exposure.
-// Returns the bounds of these surfaces. Other emitters are found only by rays that happen to hit them: those
-// without a Patch or without area, solids that enclose the scene, those that move during the exposure or
-// within their model, and all instances if they have more than kMaxInstancedEmitters emitting primitives.
-// Throws Cancelled. REQUIRES: the geometry's primitives are numbered.
+// Adds to `geometry` the emission of materials, and a kernel of the emitting surfaces that are sampled, at
+// their places at the start of the exposure. Returns the bounds of these surfaces. Other emitters are found
+// only by rays that happen to hit them: emitters without a Patch or without area, solids that enclose the
+// scene, emitters that move during the exposure or within a model, and all emitters of instances if there are
+// more than kMaxInstancedEmitters. Throws Cancelled. REQUIRES: geometry.material_of is set.
 template <class T>
 std::vector<LightBounds> add_emitters(const Scene& scene, const Exposure& exposure, Geometry<T>& geometry);
 

@@ -15,7 +15,7 @@ using ShapeSets = std::vector<std::unique_ptr<ShapeSet>>;
 
 // Adds the kernels of the sets and their primitives, numbered from `number`. `before` is null or contains the
 // kernels for another exposure. Kernels of static sets are reused. Shapes that move during the exposure get
-// additional kernels in `moving`. These must fill surfaces after all other kernels.
+// additional kernels in `moving`, which must fill surfaces after all other kernels.
 template <class T>
 void add_shapes(const ShapeSets& sets, const Exposure& exposure, const std::vector<ShapeKernelPtr<T>>* before,
                 std::vector<ShapeKernelPtr<T>>& kernels, std::vector<ShapeKernelPtr<T>>& moving,
@@ -67,8 +67,8 @@ PlacedInstance<T> place(const std::shared_ptr<const ModelGeometry<T>>& model, co
   const Affined model_from_world = inverse(world_from_model);
   // Rows of the inverse are perpendicular, because instances are scaled before they are rotated. Rounding
   // therefore moves a point across its surface in proportion to its coordinates, even if the scale is not
-  // uniform. The factor 2 exceeds sqrt(3), the largest ratio of the sum of the errors of three rows to their
-  // length.
+  // uniform. The factor 2 exceeds sqrt(3), the largest ratio between the sum of the errors of three rows and
+  // the length of the vector of these errors.
   const double base =
       2 * 8 * double{std::numeric_limits<T>::epsilon()} * max_component(abs(world_from_model.origin));
   return {model,

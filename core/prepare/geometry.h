@@ -6,7 +6,7 @@ namespace orrery {
 
 // Returns the scene geometry in number type T (float or double) for an exposure. Models get acceleration
 // structures of type `inner`. `before` is the geometry for another exposure, or null. Static parts are shared
-// with it, and structures of moving parts are refitted if possible. Throws Cancelled, and the errors of
+// with `before`, and structures of moving parts are refitted if possible. Throws Cancelled, and the errors of
 // AcceleratorType.
 template <class T>
 std::shared_ptr<const Geometry<T>> make_geometry(std::shared_ptr<const Scene> scene,
@@ -20,8 +20,8 @@ template <class T>
 AcceleratorPtr<T> build_or_refit(const AcceleratorType& type, const PrimitiveList<T>& primitives,
                                  const Accelerator<T>* before);
 
-// Returns the facts of the scene's structure, including the structures of its models: total bytes and
-// references, and its depth plus the largest depth of a model.
+// Returns the facts of the scene's structure, including the structures of the models. Bytes and references
+// are totals. The depth is the depth of the scene's structure plus the largest depth of a model's structure.
 template <class T>
 AcceleratorFacts facts_of(const World<T>& world);
 

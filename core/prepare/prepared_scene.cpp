@@ -13,8 +13,8 @@ namespace {
 template <class T>
 using Moments = std::list<PreparedScene::Parts::Moment<T>>;
 
-// Moves the moment of `exposure` to the front. Adds it if it is missing, and then evicts the last moment if
-// there are more than kMoments.
+// Moves the moment of `exposure` to the front. If the moment is missing, adds it, and evicts the last moment
+// if there are then more than kMoments.
 template <class T>
 void move_to_front(Moments<T>& moments, const Exposure& exposure) {
   const auto known =
@@ -24,8 +24,8 @@ void move_to_front(Moments<T>& moments, const Exposure& exposure) {
   if (moments.size() > PreparedScene::kMoments) moments.pop_back();
 }
 
-// Returns the most recently used world with this accelerator type, except that of the first moment. Returns
-// an empty world if there is none.
+// Returns the most recently used world with this accelerator type among all moments but the first. Returns an
+// empty world if there is none.
 template <class T>
 World<T> world_before(const Moments<T>& moments, const AcceleratorType& type) {
   for (auto moment = std::next(moments.begin()); moment != moments.end(); ++moment)
@@ -33,8 +33,8 @@ World<T> world_before(const Moments<T>& moments, const AcceleratorType& type) {
   return {};
 }
 
-// Opens a memory account for a build, with the source of the current account. Returns null if memory is not
-// counted.
+// Opens a memory account for a build, with the source of the current account, and drops the accounts of
+// evicted data. Returns null if memory is not counted.
 std::shared_ptr<MemoryAccount> open_account(PreparedScene::Parts& parts) {
   const MemoryAccount* const client = TaskScope::current().memory;
   if (!client) return nullptr;

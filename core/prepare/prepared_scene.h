@@ -16,10 +16,11 @@
 
 namespace orrery {
 
-// Scene with cached data for rendering it: kernels and acceleration structures. Thread-safe. Each part is
-// built once. The loaded scene is charged to the memory account of the TaskScope that calls the constructor.
-// Built data are charged to additional accounts with the source of the account that is current during the
-// build. Without an account, memory is not counted.
+// Scene with cached data for rendering: kernels and acceleration structures. Thread-safe. One thread builds
+// each part while other threads that need it wait: see world_for(). Worlds that world_for() has returned stay
+// valid after eviction. The loaded scene is charged to the memory account that is current in the constructor.
+// Built data are charged to further accounts, opened from the source of the account that is current during
+// the build. Without an account, memory is not counted.
 class PreparedScene {
  public:
   explicit PreparedScene(std::shared_ptr<const Scene> scene);
@@ -30,16 +31,15 @@ class PreparedScene {
   const Scene& scene() const;
   std::shared_ptr<const Scene> shared_scene() const;
 
-  // Returns the bytes charged to the accounts: loaded_bytes() for the loaded scene alone, bytes() with built
-  // data.
+  // Return the bytes charged to the accounts. loaded_bytes() counts the loaded scene, bytes() the loaded
+  // scene and built data.
   std::size_t loaded_bytes() const;
   std::size_t bytes() const;
-  // Excludes current bytes from the limits of the accounts, because another owner is charged for them: those
-  // of the loaded scene if `loaded`, and those of built data if `built`.
+  // Excludes the current bytes of the loaded scene (if `loaded`) and of built data (if `built`) from the
+  // limits of their accounts, because another owner is charged for these bytes.
   void settle(bool loaded, bool built) const;
 
-  // Number of exposures of a moving scene whose built data are cached. The least recently used exposure is
-  // evicted.
+  // Maximum number of exposures whose built data are cached. The least recently used exposure is evicted.
   static constexpr std::size_t kMoments = 2;
 
   struct Parts;
@@ -67,7 +67,7 @@ struct PreparedScene::Parts {
   };
   std::shared_ptr<const Scene> scene;
   std::shared_ptr<MemoryAccount> loaded;  // null if memory is not counted
-  std::size_t loaded_bytes = 0;           // bytes of `loaded` at construction
+  std::size_t loaded_bytes = 0;           // bytes of the account `loaded` at construction
   mutable std::mutex accounts_mutex;
   std::vector<std::shared_ptr<MemoryAccount>> built;  // guarded by accounts_mutex
   StoppableMutex trying;  // guards `chosen` and `network`; held while either is computed
@@ -76,9 +76,9 @@ struct PreparedScene::Parts {
   BuiltData<double> made_double;
 };
 
-// Returns the scene in number type T with an accelerator for an exposure, built if not cached. Adds the build
-// time in milliseconds to `build_ms`. Throws Cancelled if `stop` is requested, and the errors of
-// AcceleratorType. Thread-safe.
+// Returns the scene in number type T with an accelerator for an exposure. Builds both if they are not cached.
+// Adds the build time in milliseconds to `build_ms`. Throws Cancelled if `stop` is requested, std::bad_alloc
+// or the error of the memory account if memory is refused, and the errors of AcceleratorType. Thread-safe.
 template <class T>
 World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& accelerator, const Exposure& exposure,
                    double& build_ms, std::stop_token stop = {});

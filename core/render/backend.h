@@ -11,20 +11,21 @@
 #include "core/render/worker_pool.h"
 #include "core/tuning/settle.h"
 
-// Interface of a render backend, which renders tiles on threads of this process or elsewhere.
+// Interface of render backends. A backend renders tiles on threads of this process or elsewhere.
 namespace orrery {
 
 // Cancellation, progress and limits of a render.
 struct RenderControl {
-  std::stop_token stop = {};                               // a stop request ends the render with Cancelled
-  std::function<void(int done, int total)> progress = {};  // counts tiles; called concurrently
-  bool background = false;                                 // other renders have priority
-  bool spread = false;                                     // order tiles so that any prefix covers the image
-  SlotLease* lease = nullptr;                              // see WorkerPool::for_each()
-  // Returns the seconds since the client's request began. Thread-safe. If empty, budgets count from the start
-  // of the render.
+  std::stop_token stop = {};  // a stop request ends the render with Cancelled
+  // Called after each tile, by several threads at once, with the number of finished tiles.
+  std::function<void(int done, int total)> progress = {};
+  bool background = false;     // renders without this flag have priority
+  bool spread = false;         // for ProgressiveRender: any prefix of the tile order covers the whole image
+  SlotLease* lease = nullptr;  // see WorkerPool::for_each()
+  // Returns the seconds since the client's request began. Thread-safe. If empty, time limits count from the
+  // start of the render.
   std::function<double()> used_s = {};
-  // Limits of a render with a budget, in addition to those of the request.
+  // Further limits of a render with a budget: number of rays, and seconds. Other renders ignore them.
   double max_rays = std::numeric_limits<double>::infinity();
   double max_s = std::numeric_limits<double>::infinity();
 };
@@ -33,10 +34,10 @@ struct RenderControl {
 struct RenderStats : FilmError {
   TraceCounts counts;
   const AcceleratorType* accelerator = nullptr;
-  AcceleratorFacts structure;  // structure that traced the rays
-  double build_ms = 0;         // time to prepare the scene, if needed
-  double trace_ms = 0;         // wall clock
-  double cpu_ms = 0;           // tracing, summed over all threads
+  AcceleratorFacts structure;  // acceleration structure that traced the rays
+  double build_ms = 0;         // wall-clock time to settle the plan and prepare the scene; 0 if cached
+  double trace_ms = 0;         // wall-clock time of tracing
+  double cpu_ms = 0;           // CPU time of tracing, summed over all threads
 };
 
 // Scene and settled plan, ready to render. Thread-safe if concurrent calls have different films and
@@ -44,11 +45,12 @@ struct RenderStats : FilmError {
 class Prepared {
  public:
   virtual ~Prepared() = default;
-  // Adds the samples of each tile to the film, and their cost to `stats`. A tile whose first sample is not 0
-  // continues from the sums in the film. The film depends only on scene and plan, not on the backend, its
-  // threads, their order or the SIMD width. Throws Cancelled once a stop is requested, and the exceptions of
-  // SlotLease::renew(). The film is then invalid. REQUIRES: FilmStorage::sums, unless one call adds
-  // all samples of the film.
+  // Adds the samples of each tile to the film, and their cost and error statistics to `stats`. A tile whose
+  // first sample is not 0 continues from the sums in the film. The film depends only on scene and plan, not
+  // on the backend, the threads, the order of tiles or the SIMD width. Throws Cancelled once control.stop is
+  // requested, std::bad_alloc, and the exceptions of SlotLease::renew() and control.progress. After an
+  // exception, the film is invalid. REQUIRES: the film stores sums, unless one call adds all samples of the
+  // film.
   virtual void render(std::span<const TileView> tiles, Film& film, RenderStats& stats,
                       const RenderControl& control) = 0;
 };
@@ -57,13 +59,13 @@ class Prepared {
 class Backend {
  public:
   virtual ~Backend() = default;
-  // Prepares the scene if needed and adds the cost to `stats`. Throws Cancelled once `stop` is requested, and
-  // the errors of AcceleratorType.
+  // Prepares the scene if needed and adds the time to `stats`. Throws Cancelled once `stop` is requested,
+  // std::bad_alloc, and the errors of AcceleratorType.
   virtual std::unique_ptr<Prepared> prepare(const PreparedScene& scene, const SettledPlan& plan,
                                             RenderStats& stats, std::stop_token stop) = 0;
 };
 
-// Returns a backend on the threads of `pool`, which must outlive it.
+// Returns a backend on the threads of `pool`. The pool must outlive the backend and its Prepared objects.
 std::unique_ptr<Backend> threads_backend(WorkerPool& pool);
 
 }  // namespace orrery

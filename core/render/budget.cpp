@@ -28,13 +28,17 @@ constexpr double kShareOfCuts = 0.125, kShareOfPilot = kShareOfCuts / 2;
 // Divisors of min_contribution after a pilot and after a pass, and maximum numbers of pilots and of restarts.
 constexpr double kStep = 4, kStepOfPass = 16;
 constexpr int kMaxPilots = 10, kMaxRefinements = 3;
-// Cut rays count as heavy if their mean weight is at least this multiple of min_contribution.
+// Untraced rays were mostly cut by depth if their mean weight is at least this multiple of min_contribution.
 constexpr double kHeavy = 10;
 constexpr double kShareOfPilots = 0.25;  // fraction of the time limit after which no pilot starts
-constexpr double kSlower = 1.1;          // safety factor on the time per sample of the last pass
-constexpr double kLastPassReach = 4.4;   // if time allows less than this factor, one last pass uses it
-constexpr int kSeenTiles = 16;           // tiles of the first pass before its end is predicted
-constexpr double kSurelyLate = 1.5;      // predicted end / time limit to abandon the first pass
+constexpr double kSlower = 1.1;          // safety factor on the time per sample of the previous pass
+// If the time allows fewer samples than this multiple of the current samples, the next pass traces all of
+// them.
+constexpr double kLastPassReach = 4.4;
+constexpr int kSeenTiles = 16;  // finished tiles of the first pass from which its end is predicted
+// The first pass is abandoned if its predicted end exceeds this multiple of the time limit.
+constexpr double kSurelyLate = 1.5;
+// Time reserved for encoding: this fraction of the time limit, plus the time of all pixels at this rate.
 constexpr double kShareOfEncoding = 0.02, kEncodedPixelsPerSecond = 8e6;
 
 constexpr const char* kNoMemory = "not enough memory for another pass";
@@ -73,7 +77,7 @@ class BudgetedRender {
     choose_contribution();
     const double begin_s = used_s();
     const ForecastPilots pilots(scene_, made_.plan, pool_, control_);
-    ahead_s_ = begin_s - used_s();  // excludes the time of these pilots
+    ahead_s_ = begin_s - used_s();  // excludes the time of these pilots, which a render does not trace
     rays_per_sample_ = pilots.rays_per_sample();
     pass_s_per_sample_ = pilots.cpu_s_per_sample() / threads_at_work();
     int next = has_budget(made_.plan->asked) ? progressive_samples(*made_.plan).front() : made_.plan->samples;
@@ -101,8 +105,8 @@ class BudgetedRender {
   bool fails_on_miss() const { return *made_.plan->asked.on_miss == OnMiss::fail; }
 
   // Returns the error probability of the `look`-th certificate, counted from 1. Each certificate may end the
-  // render, so the probabilities add up to at most kAlpha. If the number of samples is requested, only the
-  // last certificate counts, with kAlpha.
+  // render, so the probabilities add up to at most kAlpha. If the request sets the samples, only the last
+  // certificate counts, with kAlpha.
   double alpha_of_look(int look) const {
     return Certificate::kAlpha * (made_.plan->free_samples ? std::exp2(-look) : 1);
   }
@@ -118,9 +122,9 @@ class BudgetedRender {
     return limit_s_ * (1 - kShareOfEncoding) - pixels / kEncodedPixelsPerSecond;
   }
 
-  // Chooses min_contribution with pilots, if it is free. Reduces it until untraced rays cause at most
-  // kShareOfPilot of the error, or are mostly cut by depth, or until the limits of pilots or time are
-  // reached.
+  // Chooses min_contribution with pilots, if it is free. Divides it by kStep until untraced rays cause at
+  // most kShareOfPilot of the error or are mostly cut by depth. Also stops after kMaxPilots pilots, or after
+  // kShareOfPilots of the time limit.
   void choose_contribution() {
     if (!made_.plan->free_contribution) return;
     for (int pilots = 1;; ++pilots) {
@@ -143,7 +147,7 @@ class BudgetedRender {
     return stats.omitted.sum >= kHeavy * least * static_cast<double>(stats.counts.cut_rays);
   }
 
-  // Adds the cost of rays that do not contribute to the image.
+  // Adds the cost of rays that do not contribute to the image to `discarded_`.
   void discard(const RenderStats& traced) {
     discarded_.counts.add(traced.counts);
     discarded_.trace_ms += traced.trace_ms;
@@ -204,7 +208,7 @@ class BudgetedRender {
   }
 
   // Traces one pass. Returns false if the time limit is reached, or if there is no memory to copy the film.
-  // The result is then the film of the previous pass. Throws BudgetMissed if the first pass is abandoned.
+  // The image of the previous pass is then the result. Throws BudgetMissed if the first pass is abandoned.
   bool trace(ProgressiveRender& passes, int samples) {
     if (is_timed() && made_.samples > 0 && !keep(passes.film())) return false;
     std::stop_source late;
@@ -231,7 +235,7 @@ class BudgetedRender {
     return true;
   }
 
-  // Copies the film. Returns false if there is no memory.
+  // Copies the film to made_.film. Returns false if there is no memory.
   bool keep(const Film& film) try {
     made_.film = film.copy();
     return true;
@@ -240,8 +244,9 @@ class BudgetedRender {
     return false;
   }
 
-  // Returns whether the first pass is late or is predicted to be late by far. REQUIRES: the finished tiles
-  // are spread over the whole image.
+  // Returns whether the first pass has exceeded the time limit, or will end after kSurelyLate times the
+  // limit. The end is extrapolated from at least kSeenTiles finished tiles. Returns false once all tiles are
+  // finished. REQUIRES: the finished tiles are spread over the whole image.
   bool is_surely_late(double begin_s, int done, int total) {
     const double now_s = used_s();
     if (done == total) return false;
@@ -261,6 +266,7 @@ class BudgetedRender {
   static bool is_not_sampling(const Certificate::Term& term) { return term.subject != Certificate::kSamples; }
   // Returns the RMS bound of all terms except the sampling error, or nullopt if it is unknown.
   std::optional<double> rest() const { return made_.certificate.total_of(is_not_sampling).rms; }
+  // Returns the RMS bound of all terms with a known bound except the sampling error.
   double rest_known() const {
     return *made_.certificate
                 .total_of([](const Certificate::Term& term) {
@@ -271,15 +277,17 @@ class BudgetedRender {
 
   bool is_proved() const { return made_.certificate.total().rms && *made_.certificate.total().rms <= error_; }
 
-  // Returns whether the image has the requested samples. Only a time limit of the request may reduce them.
+  // Returns false if the image has fewer samples than the request sets. With a time limit, fewer are allowed.
   bool has_samples_asked() const {
     return made_.plan->free_samples || seconds_ > 0 || made_.samples == made_.plan->samples;
   }
 
   bool is_provable() const { return least() && *least() <= error_; }
 
-  // Returns whether the error is proved, or whether the bound is so close to the smallest provable error that
-  // more samples are not worth their cost. A smaller error limit never leads to fewer samples.
+  // Returns whether more samples are not worth their cost. This requires an estimated error of at most the
+  // error limit less the other known errors, or half of the limit if that is larger. In addition, one of
+  // these conditions must be met: the bound meets the error limit, or is at most kNearLeast times the
+  // smallest provable error, or there is no bound. A smaller error limit never leads to fewer samples.
   bool is_near_enough() const {
     const SampledError& error = made_.stats.error;
     if (!error.known()) return false;
@@ -291,7 +299,8 @@ class BudgetedRender {
     return !bound || *bound <= std::max(error_, kNearLeast * *least());
   }
 
-  // Returns whether more passes are useless.
+  // Returns whether an error limit makes more passes useless. With samples set by the request, passes stop
+  // early only if the render must fail.
   bool is_enough() const {
     return error_ > 0 && (is_hopeless() || (made_.plan->free_samples && is_near_enough()));
   }
@@ -333,7 +342,7 @@ class BudgetedRender {
     }
     const double rays = rays_per_sample_ * next;
     if (rays <= control_.max_rays) return next;
-    reason_ = "twice as many samples would take " + rounded(rays) + " rays (limit " +
+    reason_ = "another pass would bring the image to " + rounded(rays) + " rays (limit " +
               rounded(control_.max_rays) + ", request_rays)";
     return 0;
   }
@@ -376,7 +385,7 @@ class BudgetedRender {
   std::string late_reason() const {
     if (min_s_ > 0) return "first pass would take about " + rounded(min_s_) + " s";
     if (is_late_) return "time limit reached in the first pass";
-    if (gave_up_) return "a pass took longer than the previous one, and stopping it took too long";
+    if (gave_up_) return "a pass took longer than predicted and was stopped after the time limit";
     const bool first = made_.samples == progressive_samples(*made_.plan).front();
     return std::string(first ? "first" : "last") + " pass exceeded the time limit";
   }
@@ -390,16 +399,16 @@ class BudgetedRender {
   const PreparedScene& scene_;
   WorkerPool& pool_;
   const RenderControl& control_;
-  const double error_, seconds_;  // 0: no limit
-  const double limit_s_;          // time limit; may be infinite
+  const double error_, seconds_;  // limits of the request; 0: no limit
+  const double limit_s_;          // smaller of seconds_ and control.max_s; may be infinite
   const Clock::time_point begin_;
-  double ahead_s_ = 0;  // seconds that a forecast adds to the clock
+  double ahead_s_ = 0;  // predicted seconds of passes, which a forecast adds to the clock
   int refinements_ = 0, looks_ = 0;
   bool gave_up_ = false;                                // a pass other than the first was abandoned
   std::atomic<bool> is_late_ = false;                   // the first pass was late and was abandoned
   std::atomic<double> min_s_ = 0.0;                     // predicted end of an abandoned first pass
-  double pass_s_per_sample_ = 0, rays_per_sample_ = 0;  // last complete pass
-  RenderStats discarded_;                               // pilots, and passes that cut too many rays
+  double pass_s_per_sample_ = 0, rays_per_sample_ = 0;  // costs measured in the last complete pass
+  RenderStats discarded_;                               // cost of pilots and of discarded images
   // Image after `samples` samples per pixel.
   struct Made {
     SettledPlan plan;
@@ -409,8 +418,8 @@ class BudgetedRender {
     std::optional<Film> film = {};  // set while a pass may be abandoned, and at the end
   };
   Made made_;
-  std::optional<Made> before_;  // image with a larger min_contribution, until there is a better one
-  std::string reason_;          // why there was no further pass
+  std::optional<Made> before_;  // image with a larger min_contribution, until a better one exists
+  std::string reason_;          // why no further pass was made; may be empty
 };
 
 }  // namespace

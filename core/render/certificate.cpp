@@ -17,7 +17,8 @@ double display_rms(double mean) {
   return std::min(1.0, std::sqrt(mean < kTouches ? kSlope * mean : encoded * encoded) + kCurveError);
 }
 
-// Returns the bound for light that was removed. An estimated bound has no maximum.
+// Returns the bound, in the plan's error metric, on the error from the light in `away`. An estimated bound
+// has no maximum.
 Bound bound_of(const Plan& plan, const OmissionLedger& away, bool proved) {
   const bool display = plan.space == Space::display;
   const double max = display ? display_max(away.max()) : away.max();
@@ -51,10 +52,10 @@ Certificate::Term precision_term(const Plan& plan) {
   return {"precision", Bound::unknown(), "no ray was traced in double precision for comparison"};
 }
 
-// Returns whether the errors of a tile's pixels are correlated. If they are independent, the mean square
-// error of tile means is 1/1024 of that of pixels, times chi^2 over its degrees of freedom. There is one
-// degree of freedom per tile if all tiles have equal errors. The limit is a quantile of chi^2 (Wilson,
-// Hilferty 1931), exceeded with probability 1e-7.
+// Returns whether the errors of a tile's pixels are correlated. For independent errors, the mean square error
+// of tile means is 1/1024 of the mean square error of pixels, times chi^2 over its degrees of freedom. There
+// is one degree of freedom per tile if all tiles have equal errors. The limit is a quantile of chi^2 (Wilson,
+// Hilferty 1931), exceeded with probability 1e-7. Returns false for fewer than 16 whole tiles.
 bool pixels_are_alike(const SampledError& error) {
   constexpr double kMinTiles = 16, kZ = 5.2;
   const double pixel = error.pixel.rmse(), tile = error.block32.rmse();
@@ -64,9 +65,9 @@ bool pixels_are_alike(const SampledError& error) {
 }
 
 // Bounds the sampling error. For means a and b of the halves, (a - b)^2 / 4 is on average at least the
-// squared error of their mean. No difference exceeds the range of a sample. A display clips bright values
-// that few samples find. This hides an error of about the light beyond the range that only one half found. (A
-// sample that is too dim to be clipped appears in the difference.)
+// squared error of their mean. No difference exceeds the range of a sample. In display values, bright samples
+// that only one half found are clipped. The clipping hides an error of about the radiance above display white
+// in that half. (A sample that is too dim to be clipped appears in the difference.)
 Certificate::Term sampling_term(const Plan& plan, const RenderStats& stats, double doubt) {
   const char* const subject = Certificate::kSamples;
   if (!stats.error.known())

@@ -17,7 +17,7 @@ struct Certificate {
   static constexpr double kConfidence = 0.95,
                           kAlpha = 1 - kConfidence;  // confidence of estimated bounds, over all seeds
 
-  static constexpr const char* kSamples = "samples";  // subject of the sampling error
+  static constexpr const char* kSamples = "samples";  // Term::subject of the sampling error
 
   struct Term {
     std::string subject;
@@ -26,14 +26,15 @@ struct Certificate {
   };
   std::vector<Term> terms;
   Space space = Space::linear;
-  // Smallest RMS that the samples of an image of this size can prove, or nullopt if they cannot prove any.
+  // Smallest RMS error that samples can prove for an image of this size, or nullopt if they cannot prove one.
   std::optional<double> min_provable = {};
-  // RMSE estimated from the two halves of the samples. It is noisy and not part of total().
+  // RMSE estimated from the two halves of the samples, or nullopt if the halves were not compared. The
+  // estimate is noisy and not part of total().
   std::optional<double> estimate = {};
 
-  // Intended bias of an option. `mean` is the exact mean difference per channel from the same render without
-  // the option. `standard_error` is the standard error of `mean` as an estimate of the bias; it is infinite
-  // for a single tile.
+  // Intended bias of an option with value `value`. `mean` is the exact mean difference in radiance, per
+  // channel, from the same render without the option. `standard_error` is the standard error of `mean` as an
+  // estimate of the bias. It is infinite for a single tile.
   struct Bias {
     std::string option;
     double value;
@@ -43,7 +44,7 @@ struct Certificate {
   // Kinds of light that the reference lacks: Plan::not_followed.
   std::vector<const char*> not_followed = {};
 
-  Bound total() const;  // sum of all terms, of the weakest kind
+  Bound total() const;  // sum of all terms, with the weakest kind of evidence
   Bound known() const;  // sum of the terms with a known bound
   // Returns the sum of the terms for which keep(term) is true.
   template <class Keep>
@@ -58,12 +59,14 @@ struct Certificate {
   }
 };
 
-// Returns the RMS bound for an image of this size whose two halves are equal. This is the smallest bound that
-// samples can prove for the plan's technique. Returns nullopt if the range of a sample is unbounded.
+// Returns the RMS bound of an image of the plan's size if both halves of the samples are equal in every
+// pixel. Samples cannot prove a smaller bound. Returns nullopt if the radiance of a sample is unbounded.
+// `doubt` has the same meaning as in certify(). Thread-safe.
 std::optional<double> min_provable(const Plan& plan, double doubt = Certificate::kAlpha);
 
 // Returns the certificate of an image. `doubt` is the probability that an estimated bound is wrong. It must
-// be less than kAlpha if several certificates of one render are examined.
+// be less than kAlpha if several certificates of one render are examined. Thread-safe; throws only
+// std::bad_alloc.
 Certificate certify(const Plan& plan, const RenderStats& stats, double doubt = Certificate::kAlpha);
 
 }  // namespace orrery

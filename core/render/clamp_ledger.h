@@ -12,8 +12,8 @@ namespace orrery {
 // these samples. The variation between tiles gives the standard error of the mean as an estimate of its
 // expectation.
 struct ClampLedger {
-  OmissionLedger pixels;            // all channels together
-  std::array<Sum, 3> sum, squares;  // per channel, of tile sums and of their squares
+  OmissionLedger pixels;            // removed radiance of all pixels and channels
+  std::array<Sum, 3> sum, squares;  // by channel: total of the tile sums, and total of their squares
   double tiles = 0;
 
   double mean(std::size_t channel) const {
@@ -34,13 +34,13 @@ struct ClampLedger {
     }
     ++tiles;
   }
-  // Adds other pixels with the same number of samples.
+  // Adds the ledger of other pixels with the same number of samples.
   void add(const ClampLedger& other) {
     pixels.add(other.pixels);
     add_sums(other);
   }
-  // Adds other samples of the same pixels. Their tiles count as additional tiles, which tends to overestimate
-  // the standard error.
+  // Adds the ledger of other samples of the same pixels. Its tiles count as additional tiles, so the standard
+  // error tends to be overestimated.
   void join(const ClampLedger& other) {
     pixels.join(other.pixels);
     add_sums(other);

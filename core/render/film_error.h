@@ -11,10 +11,10 @@ namespace orrery {
 // Error statistics of a film.
 struct FilmError {
   std::uint64_t non_finite_pixels = 0;
-  OmissionLedger omitted;
+  OmissionLedger omitted;  // light of untraced rays
   ClampLedger clamped;
-  Halves halves;       // relative to Plan::halves_range(); empty if that is infinite
-  SampledError error;  // known if the sample count is even and one pass traced its second half
+  Halves halves;       // relative to Plan::halves_range(); empty if this range is infinite
+  SampledError error;  // known if the sample count is even and the last pass traced at least the second half
 
   // Adds the statistics of other tiles.
   void add(const FilmError& other) {
@@ -24,7 +24,8 @@ struct FilmError {
     halves.add(other.halves);
     error.add(other.error);
   }
-  // Adds the ledgers of earlier passes. The other statistics already cover all samples.
+  // Adds the ledgers of earlier passes to the statistics of the last pass. The other members already cover
+  // all samples.
   void join(const FilmError& before) {
     omitted.join(before.omitted);
     clamped.join(before.clamped);

@@ -8,8 +8,8 @@ namespace orrery {
 namespace {
 
 constexpr int kSamples = 4, kSteps = 4, kTiles = 16;
-constexpr double kColdMs = 50;            // CPU time below which cold caches distort the result
-constexpr double kLargestExponent = 1.5;  // for mean square errors at edges
+constexpr double kColdMs = 50;            // CPU time below which cold caches distort the measured time
+constexpr double kLargestExponent = 1.5;  // exponent_ of errors at edges
 
 double rays_of(const Pilot& pilot) { return static_cast<double>(pilot.stats.counts.rays.total()); }
 
@@ -18,8 +18,8 @@ double mean_square(const RenderStats& stats) {
   return stats.halves.known() ? stats.halves.mean() : rmse * rmse;
 }
 
-// Traces the tiles, and repeats this if it took less than kColdMs. The first tiles of a process are up to ten
-// times slower.
+// Traces the tiles, and traces them again if this took less than kColdMs. The first tiles of a process are up
+// to ten times slower.
 Pilot warm_tiles(const PreparedScene& scene, const SettledPlan& plan, int samples, WorkerPool& pool,
                  const RenderControl& control) {
   const Pilot first = trace_tiles(scene, plan, kTiles, samples, pool, control);
@@ -31,7 +31,8 @@ Pilot warm_tiles(const PreparedScene& scene, const SettledPlan& plan, int sample
 
 }  // namespace
 
-// Blocks of pixels predict rays and errors, but neither path reuse nor time. Whole tiles predict both.
+// The blocks of trace_pilot() predict rays and errors, but neither path reuse nor time. Whole tiles predict
+// path reuse and time.
 ForecastPilots::ForecastPilots(const PreparedScene& scene, const SettledPlan& plan, WorkerPool& pool,
                                const RenderControl& control)
     : samples_(plan->samples == 1 ? 1 : kSamples),

@@ -10,7 +10,8 @@
 namespace orrery {
 namespace {
 
-// Throws std::bad_alloc if the memory account refuses `bytes` more. Allocates nothing.
+// Throws std::bad_alloc if the memory account of the task refuses `bytes` more bytes, and Cancelled.
+// Allocates nothing.
 void require_memory(std::size_t bytes) {
   const MemoryCharge charge(bytes);
   interruption_point();
@@ -24,7 +25,7 @@ Film make_film(const Plan& plan, FilmStorage storage) {
   return Film(plan.width, plan.height, storage, channels);
 }
 
-// Returns the tiles of a film, each with `samples` samples starting at `first_sample`.
+// Returns all tiles of a film, each with `samples` samples that start at `first_sample`.
 std::vector<TileView> tiles_of(const Film& film, int first_sample, int samples) {
   const TileGrid grid(film.width(), film.height());
   std::vector<TileView> tiles;
@@ -36,7 +37,8 @@ std::vector<TileView> tiles_of(const Film& film, int first_sample, int samples) 
   return tiles;
 }
 
-// Reorders the tiles in steps of the golden ratio, so that any prefix is spread over the whole image.
+// Reorders the tiles in steps of about 0.618 of their number (golden ratio), so that any prefix is spread
+// over the whole image.
 std::vector<TileView> spread(const std::vector<TileView>& tiles) {
   const std::size_t size = tiles.size();
   auto step = static_cast<std::size_t>(0.618 * static_cast<double>(size));

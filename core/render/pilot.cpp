@@ -9,8 +9,8 @@
 namespace orrery {
 namespace {
 
-constexpr int kSide = 4;
-constexpr int kMinBlocks = 64;  // fewer if the image has fewer
+constexpr int kSide = 4;        // side of a block, in pixels
+constexpr int kMinBlocks = 64;  // blocks of a pilot; fewer if the image has fewer
 
 Pilot trace(std::span<const TileView> views, const PreparedScene& scene, const SettledPlan& plan,
             WorkerPool& pool, const RenderControl& control) {
@@ -25,13 +25,13 @@ Pilot trace(std::span<const TileView> views, const PreparedScene& scene, const S
   return pilot;
 }
 
-// Returns a pseudorandom number in [0, end) that depends on `i`.
+// Returns a pseudorandom number in [0, end). The number depends only on `i` and `end`.
 int below(int end, int i) {
   return static_cast<int>(mix_bits(static_cast<std::uint32_t>(i)) % static_cast<std::uint32_t>(end));
 }
 
-// Adds up to `wanted` blocks of a tile, evenly spaced. The first one is pseudorandom and depends on the
-// tile's number.
+// Adds up to `wanted` evenly spaced blocks of a tile. The first block is pseudorandom and depends on the
+// number of the tile.
 void add_blocks(const TileView& tile, int number, int wanted, std::vector<TileView>& blocks) {
   const int across = (tile.width + kSide - 1) / kSide, down = (tile.height + kSide - 1) / kSide;
   const int all = across * down, some = std::min(wanted, all);
@@ -64,7 +64,7 @@ Pilot trace_tiles(const PreparedScene& scene, const SettledPlan& plan, int most,
   const TileGrid grid(plan->width, plan->height);
   const int count = std::min(most, grid.size());
   std::vector<TileView> tiles;
-  for (int i = 0; i < count; ++i) {  // one tile from each of `count` equal ranges
+  for (int i = 0; i < count; ++i) {  // one tile from each of `count` equal ranges of tile numbers
     const int begin = i * grid.size() / count, end = (i + 1) * grid.size() / count;
     tiles.push_back(grid.at(begin + below(end - begin, i), samples));
   }

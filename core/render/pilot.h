@@ -4,20 +4,22 @@
 
 namespace orrery {
 
+// Result of a pilot, a measuring render of a subset of the pixels.
 struct Pilot {
   RenderStats stats;
-  double share;  // traced fraction of the image's pixels
+  double share;  // traced fraction of the image's pixels, in (0, 1]
 };
 
-// Traces `samples` samples of one block of 4 x 4 pixels in each tile, 1/64 of the image. A small image has
-// several blocks per tile, at least 1024 pixels in all. Returns the statistics of these pixels and discards
-// the film. The result, except times, depends only on scene and plan. Throws Cancelled once control.stop is
-// requested. REQUIRES: one sample if the plan has one.
+// Traces `samples` samples in one block of 4 x 4 pixels per tile, 1/64 of the image. A small image has
+// several blocks per tile: 1024 pixels in all, or the whole image if it is smaller. Returns the statistics of
+// these pixels and discards the film. The result, except times, depends only on scene and plan. Throws the
+// errors in renderer.h except BudgetMissed. Uses only stop, background and lease of `control`. REQUIRES:
+// `samples` is 1 if plan->samples is 1.
 Pilot trace_pilot(const PreparedScene& scene, const SettledPlan& plan, int samples, WorkerPool& pool,
                   const RenderControl& control);
 
-// Traces at most `most` whole tiles from all parts of the image. Unlike blocks, they have the cost per pixel
-// and the path reuse of the image. Otherwise like trace_pilot().
+// Like trace_pilot(), but traces at most `most` whole tiles from all parts of the image. Unlike blocks, whole
+// tiles have the same cost per pixel and the same path reuse as the image.
 Pilot trace_tiles(const PreparedScene& scene, const SettledPlan& plan, int most, int samples,
                   WorkerPool& pool, const RenderControl& control);
 

@@ -6,21 +6,36 @@
 #include "core/base/error.h"
 #include "core/render/certificate.h"
 
+// Rendering of settled plans. This folder owns the render threads (worker_pool.h), backends (backend.h),
+// budgets and forecasts (budget.h), pilots (pilot.h, forecast_pilots.h), error certificates (certificate.h)
+// and the encoding of films (views.h). A settled plan is a plan whose accelerator is final: settle() returns
+// it as a SettledPlan, see core/tuning/settle.h.
+//
+// Threads: WorkerPool, Backend and Prepared are thread-safe, and all free functions may be called from any
+// thread at the same time, also with the same PreparedScene and pool. Functions that render block the calling
+// thread until their result is complete, and trace tiles on the threads of the pool. A ProgressiveRender or
+// TileRenderer is used by one thread at a time. ForecastPilots are immutable once constructed.
+//
+// Errors: functions that render throw Cancelled once a stop is requested, InputError if an acceleration
+// structure exceeds a limit, std::bad_alloc if memory runs out, and the exceptions of SlotLease::renew() and
+// of the callbacks in RenderControl. Only render_frame(), render_within_budget() and require_met() throw
+// BudgetMissed.
 namespace orrery {
 
 // Result of a render with a budget.
 struct BudgetOutcome {
-  double error = 0, seconds = 0;  // requested; 0: no limit
+  double error = 0, seconds = 0;  // requested limits; 0: no limit
   OnMiss on_miss = OnMiss::best;
-  RenderSettings settings;  // reproduce the image without a budget
+  RenderSettings settings;  // a request with them renders the same image without a budget
   bool error_met = true, seconds_met = true;
-  double used_s = 0;                     // at the end, see RenderControl::used_s
+  double used_s = 0;                     // seconds used, see RenderControl::used_s
   std::optional<double> min_error = {};  // smallest provable error at this image size
-  std::optional<double> min_s = {};      // predicted time of an abandoned first pass
+  std::optional<double> min_s = {};      // predicted end of an abandoned first pass, seconds
   std::string reason;                    // why the budget was missed; empty if it was met
 
   bool met() const { return error_met && seconds_met; }
-  // Sets the time used up to the end of encoding. May turn a met time limit into a missed one.
+  // Sets used_s to the time at the end of encoding. If that exceeds the time limit, the limit counts as
+  // missed.
   void end_at(double seconds_used);
 };
 
@@ -47,28 +62,30 @@ struct RenderResult {
   std::optional<BudgetOutcome> budget = {};
 };
 
-// Renders one frame on the pool. If the plan has a budget, the budget determines the samples, and
-// BudgetMissed may be thrown; see render_within_budget(). Only FilmStorage::sums stores the plan's channels.
-// Throws Cancelled once control.stop is requested.
+// Renders one frame on the pool. With a budget, returns render_within_budget(): the budget determines the
+// samples, the film stores sums, and BudgetMissed may be thrown. Only FilmStorage::sums stores the plan's
+// channels.
 RenderResult render_frame(const PreparedScene& scene, const SettledPlan& plan, FilmStorage storage,
                           WorkerPool& pool, const RenderControl& control = {});
 
-// Returns the samples per pixel after each pass of a progressive render. The last pass has all samples of the
-// plan. Each earlier pass has half as many as the next, rounded down, so that the two halves of an even
+// Returns the samples per pixel after each pass of a progressive render, ascending. The last number is the
+// plan's samples. Each other number is half of the next, rounded down, so that the two halves of an even
 // number give an error estimate. A pass of one sample is omitted if a single sample is at the pixel centre,
-// as it is not part of a larger set.
+// because this sample is not part of a larger set.
 std::vector<int> progressive_samples(const Plan& plan);
 
-// One frame that is rendered in passes. After each pass, the film is identical to one whose samples were
-// traced in a single pass. Scene and pool must outlive it.
+// One frame that is rendered in passes. After each pass, the film is identical to a film whose samples were
+// traced in a single pass. `scene` and `pool` must outlive the object. Used by one thread at a time.
 class ProgressiveRender {
  public:
-  // Prepares the scene and allocates the film. Throws Cancelled once `stop` is requested.
+  // Prepares the scene and allocates the film. Throws Cancelled once `stop` is requested, InputError if an
+  // acceleration structure exceeds a limit, and std::bad_alloc.
   ProgressiveRender(const PreparedScene& scene, const SettledPlan& plan, WorkerPool& pool,
                     std::stop_token stop);
 
-  // Traces samples until each pixel has `samples`. Throws Cancelled once control.stop is requested. After any
-  // exception the film is invalid. REQUIRES: more samples than before, at most the plan's.
+  // Traces samples until each pixel has `samples`. Throws the errors of Prepared::render(). After an
+  // exception, the film is invalid. REQUIRES: `samples` exceeds the samples of the film, and is at most the
+  // plan's samples.
   void refine(int samples, const RenderControl& control = {});
 
   const Film& film() const { return film_; }

@@ -10,18 +10,19 @@ namespace orrery {
 
 // Error estimate of an image from the difference between two halves of its samples. Each half is a
 // low-discrepancy net. For means a and b of the halves, the expectation of (a - b)^2 / 4 is the mean square
-// error of their mean if the halves are independent. Otherwise it is an overestimate: at edges, the RMSE is
-// 1.6 times too large for 2 samples and 1.2 times for 16. Sums run over values, three per pixel. For 4 x 4
-// and 32 x 32 blocks, the differences of a block are averaged first.
+// error of their mean if the halves are independent. Otherwise the expectation is larger: at edges, the
+// estimated RMSE is 1.6 times too large for 2 samples and 1.2 times for 16. Sums run over values, three per
+// pixel. For blocks of 4 x 4 and 32 x 32 pixels, the differences of a block are averaged before they are
+// squared.
 struct SampledError {
   struct MeanSquare {
-    Sum squares = 0;
-    double values = 0;
+    Sum squares = 0;    // sum of ((a - b) / 2)^2
+    double values = 0;  // number of terms in `squares`
 
     double rmse() const { return values > 0 ? std::sqrt(squares / values) : 0; }
   };
   int samples = 0;                    // per pixel
-  MeanSquare pixel, block4, block32;  // only blocks entirely inside the image
+  MeanSquare pixel, block4, block32;  // block4, block32: only blocks entirely inside the image
   // Moments of the tiles' mean squares. Tiles are independent, while pixels within a tile may not be.
   double tiles = 0;
   Sum tile_sum = 0, tile_squares = 0;
@@ -42,7 +43,7 @@ struct SampledError {
     tile_squares += other.tile_squares;
   }
 
-  // Returns the estimate for `other_samples` samples, whose mean squares are `times` times as large.
+  // Returns the estimate for `other_samples` samples per pixel, with mean squares `times` times as large.
   SampledError scaled(int other_samples, double times) const {
     SampledError all = *this;
     all.samples = other_samples;
@@ -56,7 +57,8 @@ struct SampledError {
   // number of tiles if all m are equal.
   double tiles_that_err() const { return tile_squares > 0 ? tile_sum * tile_sum / tile_squares : tiles; }
 
-  // 95 % confidence interval of the RMSE over pixels, for normally distributed means over tiles.
+  // 95 % confidence interval of the RMSE over pixels, for normally distributed means over tiles. The upper
+  // end is infinite for fewer than two tiles.
   struct Interval {
     double low, high;
   };

@@ -17,7 +17,7 @@ constexpr std::size_t kBlock4 = 16;
 Four four(const Plane& from, std::size_t slot) { return {&from[slot], stdx::element_aligned}; }
 double sum_of(const Four& values) { return (values[0] + values[1]) + (values[2] + values[3]); }
 
-// Returns 1 for pixels inside the image, else 0.
+// Returns 1 for each pixel inside the image, and 0 for the others.
 Plane inside(const TileView& tile) {
   Plane is_inside;
   is_inside.fill(tile.is_whole() ? 1.0 : 0.0);
@@ -25,7 +25,7 @@ Plane inside(const TileView& tile) {
   return is_inside;
 }
 
-// Means of the halves in single precision, which is more accurate than encode_srgb().
+// Mean radiance of each half. Rounding to float is smaller than the error of encode_srgb().
 struct Shown {
   alignas(64) std::array<float, kBatch> first, second;
 };
@@ -94,11 +94,12 @@ void TileHalves::add_to(Halves& halves, const Plan& plan) const {
   halves.add_tile(sum);
 }
 
-// The sRGB curve is concave, so noise darkens the displayed mean. It darkens the mean of both halves less
-// than that of one half. The difference between the two estimates the bias.
+// The sRGB curve is concave, so noise darkens a displayed mean on average. The mean of both halves is
+// darkened less than the mean of one half. The bias is estimated from the difference between the displayed
+// mean of both halves and the average of the two displayed means.
 void TileHalves::add_displayed_to(Halves& halves, const Plan& plan) const {
   using N = Lanes<float>;
-  const N kOfBias(16.0f);  // counts twice the bias: squares are divided by 4 later
+  const N kOfBias(16.0f);  // counts twice the bias, because sums of squares are divided by 4 later
   const N one(1.0f), none(0.0f), half(0.5f), kCodes(255.0f);
   const double most = plan.beyond_range(samples);
   alignas(64) std::array<float, kBatch> squares{}, beyond{}, rounding{};

@@ -9,16 +9,16 @@
 
 namespace orrery {
 
-// Sums of the samples of one tile by channel and pixel: of the first half, and of all. Non-finite values are
-// skipped; FilmError::non_finite_pixels counts them. Results are bit-identical at each SIMD level. REQUIRES:
-// an even number of samples.
+// Sums over the first half of the samples of one tile, and over all samples, by channel and pixel. Skips
+// non-finite values, which FilmError::non_finite_pixels counts. Results are bit-identical at each SIMD level.
+// REQUIRES: `samples` is even.
 struct TileHalves {
   const TileView& tile;
   const std::array<TileSums::Plane, 3>&first, &all;
-  int samples;  // in `all`
+  int samples;  // number of samples in `all`
 
   SampledError error() const;
-  // Adds the differences in radiance, relative to the range of a sample.
+  // Adds the differences in radiance, relative to Plan::sample_range.
   void add_to(Halves& halves, const Plan& plan) const;
   // Adds the differences in display values (sRGB-encoded, 0 to 1).
   void add_displayed_to(Halves& halves, const Plan& plan) const;

@@ -27,7 +27,8 @@ void add_vector(bool first, const Vec3Array<T>& value, Planes& sums) {
   add(first, value.z, sums[2]);
 }
 
-// Adds the values of pixels whose ray hit something. `value` is undefined for other pixels.
+// Adds the values of pixels with a weight above 0, whose rays hit something. `value` is undefined for the
+// others.
 template <class T>
 void add_weighted(bool first, const Array<T>& value, const Array<T>& weight, TileSums::Plane& sum) {
   if (first) sum.fill(0.0);
@@ -35,8 +36,8 @@ void add_weighted(bool first, const Array<T>& value, const Array<T>& weight, Til
     if (weight.values[i] > 0) sum[i] += static_cast<double>(value.values[i]);
 }
 
-// Returns the ledger of sums by channel and pixel; all 0 if `channels` is empty. Filters with negative lobes
-// may give negative sums.
+// Returns the ledger of the sums in `channels`, by channel and pixel. The sums are 0 if `channels` is empty.
+// Uses absolute values, because filters with negative lobes may cause negative sums.
 OmissionLedger ledger_of(const TileView& tile, std::span<const TileSums::Plane> channels) {
   double sum = 0, squares = 0, largest = 0;
   for (const TileSums::Plane& channel : channels)
@@ -140,7 +141,7 @@ void TileRenderer<T>::send_rays(const TileView& tile, const TileSamples& samples
     put_middle_time(rays_);
 }
 
-// Stores a single sample as the mean.
+// Stores the only sample of each pixel as the mean.
 template <class T>
 void TileRenderer<T>::put_single(const TileView& tile, Film& film) {
   const Array<T>* const radiance[] = {&result_.radiance.x, &result_.radiance.y, &result_.radiance.z};

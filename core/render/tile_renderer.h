@@ -17,23 +17,25 @@ class TileRenderer {
   // World and plan must outlive the renderer.
   TileRenderer(const World<T>& world, const Plan& plan);
 
-  // Adds the tile's samples to the film. Returns false if cancelled; the film's tile is then unchanged.
+  // Adds the tile's samples to the film. Returns false if `checkpoint` stops the render. The tile in the film
+  // is then unchanged.
   bool render(const TileView& tile, const Checkpoint& checkpoint, Film& film);
 
   // Adds the statistics of all rendered tiles to `stats`.
   void add_to(RenderStats& stats) const;
 
  private:
-  // Traces one sample of every pixel. Returns false if cancelled.
+  // Traces one sample of every pixel. Returns false if `checkpoint` stops the render.
   bool trace(const TileView& tile, int sample, const Checkpoint& checkpoint);
-  // Traces one sample of every pixel for one part of the pixel filter.
+  // Traces one sample of every pixel for the positive or the negative part of the pixel filter.
   bool trace_part(const TileView& tile, int sample, PixelFilter::Part part, TraceResult<T>& into,
                   const Checkpoint& checkpoint);
-  // Subtracts the negative part of the filter from the positive one.
+  // Subtracts the result for the negative part of the filter from the result for the positive part.
   void subtract_negative_lobe();
-  // Generates camera rays through the samples, with lens positions and times drawn from `set`.
+  // Generates camera rays through the samples. Lens positions and times are drawn from `set`.
   void send_rays(const TileView& tile, const TileSamples& samples, const Draws& draws, SampleSet set);
-  // Chooses the number of emission samples and their random streams. trace_emission_only() traces them.
+  // Chooses the number of emission samples and their random streams. trace_emission_only() traces the
+  // samples.
   void begin_emission_rays(const TileView& tile);
   void trace_emission_only(const TileView& tile, int sample, PixelFilter::Part part, TraceResult<T>& into);
   void find_streams(const TileView& tile, SampleSet set, Array<std::uint32_t>& streams);
@@ -49,18 +51,18 @@ class TileRenderer {
   const Plan& plan_;
   const bool places_samples_;  // false: samples are at the pixel centres
   TracerPtr<T> tracer_;
-  // Random streams by pixel of this tile, for the positions of samples and of emission samples.
+  // For each pixel of the current tile: random streams of the positions of samples and of emission samples.
   Array<std::uint32_t> pixel_streams_, emission_ray_streams_;
   TileSamples samples_ = TileSamples::centres(), look_samples_ = TileSamples::centres();
-  int emission_rays_ = 0;  // emission samples per sample in this tile
+  int emission_rays_ = 0;  // emission samples for each sample of the current tile
   RayBatch<T> rays_;
   TraceResult<T> result_;
   std::optional<PixelFilter> filter_;              // nullopt: samples are uniform over the pixel
-  std::unique_ptr<TraceResult<T>> negative_lobe_;  // result for the filter's negative lobes; null if none
+  std::unique_ptr<TraceResult<T>> negative_lobe_;  // result for negative lobes; null if the filter has none
   TileSums sums_;
   std::array<TileSums::Plane, 3> first_half_;  // radiance of the first half of the samples
   TileMeans means_;
-  // Light of untraced rays in this tile, summed by channel and pixel. Empty if all rays were traced.
+  // Light of untraced rays in the current tile, summed by channel and pixel. Empty if all rays were traced.
   std::vector<TileSums::Plane> omitted_;
   std::array<TileSums::Plane, 3> clamped_;  // set if Plan::clamp_indirect is above 0
   RenderStats stats_;

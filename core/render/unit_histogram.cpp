@@ -57,9 +57,10 @@ double UnitHistogram::low_of(std::size_t bin) {
   return std::ldexp(1 + (part % kPartsOfOctave) / double{kPartsOfOctave}, part / kPartsOfOctave - kOctaves);
 }
 
-// Computes the mean over bets of the product over values of 1 + bet (mean - value). A bet is a fraction of
-// the largest that cannot ruin the gambler. Half of the wealth is on the largest bet, which wins most if all
-// values are 0. Logarithms are concave, so the chord is a lower bound within a bin.
+// Computes the wealth as a weighted mean over bets. The wealth of one bet is the product over values of 1 +
+// bet (mean - value). A bet is a fraction of the largest bet that cannot ruin the gambler. Half of the wealth
+// is on the largest fraction, which wins most if all values are 0. The logarithm is concave, so its chord is
+// a lower bound within a bin.
 bool UnitHistogram::rejects(double mean, double log_odds) const {
   constexpr int kBets = 24;
   std::array<double, kBets> wealth;

@@ -21,26 +21,26 @@ namespace orrery {
 
 namespace {
 
-// Length of a time slice while other work waits, and the time after which a step or task that has not yielded
-// loses its place.
+// Length of a time slice while other steps or tasks wait, and the time after which a step or task that has
+// not yielded loses its place.
 constexpr std::chrono::milliseconds kSlice{20}, kOverdue{50};
 
 // Threads that share their time evenly between several loops.
 //
 // A place is the right to run a step or task. There are `count` places. A step that yields gives its place to
-// another step and blocks its thread. So there are at most `count` more threads for each loop. A step that
-// does not yield in time loses its place but continues to run. The system then shares the cores between that
-// step and the new owner of the place.
+// another step and blocks its thread. Each loop therefore requires at most `count` more threads. A step that
+// does not yield in time loses its place but continues to run. The operating system then shares the cores
+// between this step and the new owner of the place.
 //
-// The threads are not those of a TBB task arena. There, a caller that waits for its last tile may be assigned
-// another caller's whole frame first. A small image would then wait for a large one.
+// A TBB task arena is not used: while a caller waits for its last tile, TBB may make its thread run the whole
+// frame of another caller. A small image would then wait for a large one.
 class WorkerThreads {
  public:
   WorkerThreads(int count, int niceness) : count_(count), niceness_(niceness), idle_(count) {
     try {
       for (int i = 0; i < count; ++i) threads_.emplace_back([this] { serve(); });
       watch_ = std::thread([this] { watch(); });
-    } catch (...) {  // the system cannot start more threads
+    } catch (...) {  // std::system_error: the operating system cannot start more threads
       end();
       throw;
     }
@@ -90,11 +90,11 @@ class WorkerThreads {
     const WorkerPool::Step& work;
     const int count;
     SlotLease* const lease;
-    const TaskContext scope = TaskScope::current();  // the caller's
+    const TaskContext scope = TaskScope::current();  // scope of the caller of for_each()
     std::vector<int> free_workers;
     int next = 0, running = 0;          // next step to start; unfinished steps
     std::list<StepSlice*> paused = {};  // running steps that have yielded
-    Clock::duration used{};             // time used by steps; starts at the minimum of the loops
+    Clock::duration used{};             // time used by steps; starts at the minimum over the other loops
     std::exception_ptr error = {};
     bool lease_expired = false;
     std::condition_variable changed = {};
@@ -140,7 +140,8 @@ class WorkerThreads {
 
   // The functions below require that mutex_ is held, unless they lock it themselves.
 
-  // Adds a loop. It gets no credit for the time before, so the threads are shared evenly from now on.
+  // Adds a loop. Its used time starts at the minimum over the other loops, so it gets no credit for the time
+  // before.
   void add(Loop& loop) {
     const auto least = std::min_element(loops_.begin(), loops_.end(),
                                         [](const Loop* a, const Loop* b) { return a->used < b->used; });
@@ -150,7 +151,9 @@ class WorkerThreads {
     if (contended()) contended_.notify_one();
   }
 
-  // Returns whether several callers may have work. Loops whose lease is being renewed are not in loops_.
+  // Returns whether more than one loop or task may need a place. Counts the loops in loops_, the waiting
+  // tasks, and the places of running tasks and of loops that are not in loops_ because their lease is being
+  // renewed.
   bool contended() const {
     const auto others = std::count_if(places_.begin(), places_.end(), [&](const Place* place) {
       return std::find(loops_.begin(), loops_.end(), place->loop) == loops_.end();
@@ -182,7 +185,8 @@ class WorkerThreads {
     return best;
   }
 
-  // Returns whether a thread may start a task or a step. First resumes steps that yielded and are next.
+  // Returns whether a thread may start a task or a step. First gives free places to paused steps of the loops
+  // that are next.
   bool may_begin() {
     while (place_free()) {
       if (!tasks_.empty()) return true;
@@ -249,8 +253,8 @@ class WorkerThreads {
     if (may_begin()) changed_.notify_all();
   }
 
-  // Returns whether there are idle threads for all free places and one more. Starts a thread if needed.
-  // Returns false if the system cannot start one.
+  // Returns whether there are idle threads for all free places and for one more. Starts a thread if one is
+  // missing. Returns false if the system cannot start a thread.
   bool thread_for_another() {
     if (idle_ > count_ - static_cast<int>(places_.size())) return true;
     try {
@@ -327,14 +331,14 @@ class WorkerThreads {
 
 }  // namespace
 
-// Background threads have a higher nice value. The system scheduler therefore gives the cores to foreground
-// threads whenever these have steps to run, even within a long tile.
+// Background threads have a higher nice value. The system scheduler therefore prefers foreground threads
+// whenever they have steps to run, even within a long tile.
 struct WorkerPool::Parts {
   explicit Parts(int count)
       : builders(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count)),
         foreground(count, 0),
         background(count, 10) {}
-  tbb::global_control builders;  // limits the threads of accelerator builds
+  tbb::global_control builders;  // limits the oneTBB threads of accelerator builds
   WorkerThreads foreground, background;
 };
 

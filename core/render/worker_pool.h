@@ -7,21 +7,24 @@
 
 namespace orrery {
 
-// Lease of an admission slot, which permits a loop to run steps. The lease expires if other work needs the
-// slot.
+// Lease of an admission slot. A loop may run steps only while it has the slot. The lease expires if another
+// request needs the slot.
 class SlotLease {
  public:
-  // Returns whether the loop has lost the slot. Thread-safe. Must be fast, since it is called with locks
-  // held.
+  // Returns whether the loop has lost the slot. Thread-safe. Must be fast and must not block, because the
+  // pool calls it with its mutex locked.
   virtual bool expired() const = 0;
-  // Blocks until the loop has a slot again. An exception ends the loop.
+  // Blocks until the loop has a slot again. Called on the thread that called for_each(). An exception ends
+  // the loop.
   virtual void renew() = 0;
 
  protected:
   ~SlotLease() = default;
 };
 
-// Render threads, one pool per process, shared by the frames of all callers. Thread-safe.
+// Render threads, one pool per process, shared by the frames of all callers. Thread-safe. The constructor
+// throws std::system_error if the system cannot start the threads. The destructor waits for all tasks and
+// loops.
 class WorkerPool {
  public:
   // Starts `threads` threads, or one per core if it is 0.
@@ -30,16 +33,16 @@ class WorkerPool {
   WorkerPool(const WorkerPool&) = delete;
   int threads() const;
 
-  // Runs `task` on one of the threads, before steps that have not started. The task must be short, must not
-  // throw and must not block.
+  // Runs `task` on one of the threads, before steps that have not started. Does not wait for the task. The
+  // task must be short, must not throw and must not block.
   void enqueue(bool background, std::function<void()> task);
   // Calls work(step, worker, turn) for each 0 <= step < count on the threads, and returns after the last
-  // call. Concurrent steps have different workers, 0 <= worker < threads(). Callers share the threads evenly.
-  // A long step must call turn.yield() every few milliseconds to yield to callers that have used less time. A
-  // step that does not yield for 50 ms shares its core with them. Background callers run at lower priority.
-  // Once a step returns false or throws, no more steps start. The first exception is rethrown here. If
-  // `lease` is not null and has expired, no step starts and running steps pause when they yield. The caller's
-  // thread then renews the lease.
+  // call. Steps inherit the TaskScope of the caller. Concurrent steps have different workers, 0 <= worker <
+  // threads(). Callers share the threads evenly. A long step must call turn.yield() every few milliseconds to
+  // yield to callers that have used less time. A step that does not yield for 50 ms shares its core with
+  // other callers. Background callers run at lower priority. Once a step returns false or throws, no more
+  // steps start. The first exception is rethrown to the caller. If `lease` is not null and has expired, no
+  // step starts, and running steps pause when they yield. The caller's thread then renews the lease.
   using Step = std::function<bool(int step, int worker, TimeSlice& turn)>;
   void for_each(int count, bool background, const Step& work, SlotLease* lease = nullptr);
 

@@ -24,8 +24,8 @@ struct Box {
   }
 
   // Returns the distance to the point where the ray enters the box, or leaves it if the origin is inside.
-  // Returns infinity for a miss. In the plane of a face, a slab gives 0 / 0; min_first and max_first ignore
-  // this NaN.
+  // Returns infinity for a miss. A ray in the plane of a face gives 0 / 0 for the slab of the face. min_first
+  // and max_first ignore this NaN.
   N distance(const Ray<N>& ray) const {
     using T = ScalarOf<N>;
     using std::signbit;
@@ -45,8 +45,8 @@ struct Box {
     return select(enter <= leave && t > N(T(0)) && whole == whole, t, infinity);
   }
 
-  // Returns the surface of the face nearest to the ray's point at `t`. Distances are relative to the box's
-  // size along each axis.
+  // Returns the surface of the face that is nearest to the ray's point at `t`. The distance to a face is
+  // measured relative to the size of the box along the axis of the face.
   Surface<N> surface(const Ray<N>& ray, const N& t) const {
     using T = ScalarOf<N>;
     const N zero(T(0)), one(T(1));
@@ -70,7 +70,8 @@ struct Box {
     return {position, normal, normal, magnitude};
   }
 
-  // Returns u and v in [0, 1] on each face: (x, y) on faces perpendicular to z, (x, z) to y, and (z, y) to x.
+  // Returns u and v in [0, 1] on each face. They increase with x and y on faces perpendicular to z, with x
+  // and z on faces perpendicular to y, and with z and y on faces perpendicular to x.
   SurfacePoint<N> parameters(const Ray<N>&, const Vec3<N>& position) const {
     using T = ScalarOf<N>;
     const N zero(T(0)), one(T(1));

@@ -15,7 +15,7 @@ struct Cylinder {
   Vec3<N> center, axis;  // the axis is a unit vector
   N radius;
   N half_length;  // infinite for an infinite cylinder
-  N magnitude;    // upper bound of the absolute coordinates; within `radius` of `center` if infinite
+  N magnitude;    // upper bound of the absolute coordinates; if infinite: within `radius` of `center`
 
   static constexpr ShapeTraits kTraits = {.convex = true, .closed = true};
 
@@ -41,8 +41,8 @@ struct Cylinder {
 
   // Returns the distance to the point where the ray enters the cylinder, or leaves it if the origin is
   // inside. Returns infinity for a miss. The cylinder is the intersection of an infinite cylinder and the
-  // slab between the caps. As in Ball::distance(), the roots of the wall come from the perpendicular residue,
-  // here in the plane across the axis.
+  // slab between the caps. The roots of the infinite cylinder are computed as in Ball::distance(), in the
+  // plane perpendicular to the axis.
   N distance(const Ray<N>& ray) const {
     using T = ScalarOf<N>;
     using std::signbit;
@@ -91,9 +91,9 @@ struct Cylinder {
     return {position, normal, normal, max(magnitude, max_component(orrery::abs(position)))};
   }
 
-  // u is the angle around the axis in turns, in [0, 1], anticlockwise as seen from its tip. v on the
-  // wall is 0 at the base and 1 at the top. On an infinite cylinder, v is the distance along the axis from
-  // `point`, in metres. v on a cap is 0 at the centre and 1 at the edge.
+  // u is the angle around the axis in turns, in [0, 1], anticlockwise as seen from the tip of `axis`. v on
+  // the wall is 0 at the base and 1 at the top. On an infinite cylinder, v is the distance along the axis
+  // from `center`, in metres. v on a cap is 0 at the centre and 1 at the edge.
   SurfacePoint<N> parameters(const Ray<N>&, const Vec3<N>& position) const {
     using T = ScalarOf<N>;
     using std::abs;

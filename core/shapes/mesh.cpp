@@ -83,16 +83,17 @@ class MeshSet final : public ShapeSet {
   }
 
  private:
-  static constexpr std::uint64_t kMaxPairs = std::uint64_t{1} << 30;  // per scene
-  // Limit of MovingMesh::max_pairs, as a multiple of the pairs around vertices that coincide at all keys.
+  // Maximum number of triangle pairs that smoothing compares in a scene.
+  static constexpr std::uint64_t kMaxPairs = std::uint64_t{1} << 30;
+  // MovingMesh::max_pairs / number of triangle pairs around vertices that coincide at all keys.
   static constexpr std::uint64_t kMaxPairGrowth = 16;
 
   std::size_t part_number(std::size_t triangle) const {
     return static_cast<std::size_t>(&table_.part_of(triangle) - table_.parts.data());
   }
 
-  // Prepares a static mesh: removes degenerate triangles and unused vertices, and smooths the normals.
-  // Returns false and records a problem in `p` if smoothing exceeds kMaxPairs.
+  // Prepares a static mesh: removes degenerate triangles and unused vertices, and smooths the normals if a
+  // crease angle is set. Returns false and records a problem in `p` if smoothing exceeds kMaxPairs.
   bool take_resting(MeshObject& object, Params& p, MeshSource& source) {
     left_out_ += drop_degenerate(object.mesh);
     drop_unused(object.mesh);
@@ -118,7 +119,7 @@ class MeshSet final : public ShapeSet {
   }
 
   // Adds `pairs` to the number of triangle pairs that smoothing compares in this scene. Returns false and
-  // records a problem in `p` if it exceeds kMaxPairs.
+  // records a problem in `p` if the sum exceeds kMaxPairs.
   static bool may_compare(std::uint64_t pairs, Params& p, MeshSource& source) {
     source.pairs += pairs;
     if (source.pairs <= kMaxPairs) return true;
@@ -172,8 +173,8 @@ class MeshSet final : public ShapeSet {
     return std::make_shared<PrimitiveKernel<MeshTriangle, T, MeshRecords<T>>>(MeshRecords<T>(table_), first);
   }
 
-  MeshTable<double> table_;                   // static positions; moving parts have no smoothed normals
-  std::map<std::size_t, MovingMesh> moving_;  // by part
+  MeshTable<double> table_;                   // at rest; normals of moving meshes are not smoothed
+  std::map<std::size_t, MovingMesh> moving_;  // by index in table_.parts
   std::size_t left_out_ = 0;
 };
 

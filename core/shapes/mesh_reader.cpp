@@ -14,8 +14,8 @@ std::string entries_text(std::size_t count, const char* why, std::size_t got) {
          ")";
 }
 
-// Returns a mesh with valid indices, and with one normal and one uv per vertex or none, even after recorded
-// problems.
+// Reads a mesh from the keys of the object. Even after recorded problems, the mesh has valid indices, one
+// normal per vertex or no normals, and one uv per vertex or no uvs.
 TriangleMesh read_inline(Params& p) {
   TriangleMesh mesh;
   mesh.positions = p.points("positions", "Vertices, in metres.", {3, kLimits.vertices});
@@ -107,7 +107,8 @@ MeshObject MeshReader::read(Params& p) {
   return object;
 }
 
-// Reads one keyframe. Returns the vectors of `at_rest` for positions or normals that the keyframe omits.
+// Reads one keyframe. If the keyframe omits positions or normals, or has a wrong number of them, returns the
+// vectors of `at_rest`.
 VertexKey MeshReader::read_key(Params& p, const TriangleMesh& rest, const VertexKey& at_rest) {
   std::vector<Vec3d> positions =
       p.points("positions", "Vertices, in metres; the same number as in the mesh.", {0, kLimits.vertices});

@@ -9,13 +9,13 @@ class Params;
 
 // Mesh object of a scene.
 struct MeshObject {
-  TriangleMesh mesh;  // may be empty if Params recorded a problem
-  std::optional<double> crease_degrees;
-  Keyframes<VertexKey> keys;  // empty if static
+  TriangleMesh mesh;                     // may be empty if Params recorded a problem
+  std::optional<double> crease_degrees;  // nullopt: the normals of the mesh are not smoothed
+  Keyframes<VertexKey> keys;             // empty if static
 };
 
-// Reads the meshes of one scene. MeshLimits apply to the total over all objects and keyframes, because many
-// of them may name the same file. Records problems in Params. Throws Cancelled. Not thread-safe.
+// Reads the meshes of one scene. MeshLimits apply to the total over all objects and keyframes, because
+// several objects may name the same file. Records problems in Params. Throws Cancelled. Not thread-safe.
 class MeshReader {
  public:
   explicit MeshReader(MeshSource& source) : source_(source) {}

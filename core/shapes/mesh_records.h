@@ -10,7 +10,7 @@
 
 namespace orrery {
 
-// Triangle of a mesh with its vertex normals.
+// Triangle of a mesh, with the normals of its vertices.
 template <class N>
 struct MeshTriangle {
   Corners<N> corners, normals;
@@ -23,12 +23,12 @@ struct MeshTriangle {
   const Core& core() const { return corners; }
   N distance(const Ray<N>& ray) const { return corners.distance(ray); }
 
-  // Interpolates the vertex normals, or uses the geometric normal if they cancel.
+  // Interpolates the vertex normals, or uses the geometric normal if the vertex normals cancel.
   Surface<N> surface(const Ray<N>& ray, const N&) const {
     const Vec3<N> weights = corners.weights(ray);
     const Vec3<N> sum = normals.mix(weights);
     const N size = length(sum);
-    const auto usable = size > N(ScalarOf<N>(0.001));  // below: the vertex normals nearly cancel
+    const auto usable = size > N(ScalarOf<N>(0.001));  // otherwise the vertex normals nearly cancel
     const auto choose = [&](const N& x, const N& flat) { return select(usable, N(x / size), flat); };
     return {corners.mix(weights),
             normal,
@@ -62,10 +62,10 @@ struct MeshMapping {
 template <class T>
 struct MeshTable {
   struct Part {
-    std::size_t first;                                 // first triangle
-    std::size_t first_vertex, first_normal, first_uv;  // one normal per vertex if smooth, one uv if mapped
-    bool smooth, mapped;
-    T magnitude;
+    std::size_t first;  // index of the first triangle of the mesh
+    std::size_t first_vertex, first_normal, first_uv;
+    bool smooth, mapped;  // whether there is one normal per vertex, and one uv per vertex
+    T magnitude;          // largest absolute coordinate of the mesh
   };
   std::vector<Vec3<T>> positions, normals;
   std::vector<std::array<T, 2>> uvs;

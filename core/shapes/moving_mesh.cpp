@@ -3,7 +3,7 @@
 namespace orrery {
 namespace {
 
-// Returns mix_one(before, after) for each vector, or `before` itself if both keys share one list.
+// Returns mix_one(before, after) for each pair of vectors, or `before` itself if both keys share one list.
 template <class Mix>
 SharedVectors mixed(const SharedVectors& before, const SharedVectors& after, const Mix& mix_one) {
   if (before == after) return before;

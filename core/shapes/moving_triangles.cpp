@@ -24,7 +24,7 @@ double magnitude_of(const MovingTriangles& mesh) {
   return magnitude;
 }
 
-// MovingTriangles in the render's precision.
+// MovingTriangles in the render's precision. Times are fractions of the exposure, in [0, 1).
 template <class T>
 class Mesh {
  public:
@@ -75,7 +75,7 @@ class Mesh {
   }
 
  private:
-  // Interpolates at(moment, corner) linearly between moments, for each corner.
+  // Interpolates at(moment, corner) linearly between the moments around `time`, for each corner.
   template <class At>
   [[gnu::always_inline]] Corners<N> between(const N& time, const At& at) const {
     Corners<N> now{};
@@ -98,7 +98,7 @@ class Mesh {
 };
 
 // Returns the unit normal by the right-hand rule, or NaN for a triangle without area. Scales the sides first,
-// so that products of tiny or huge sides do not underflow or overflow.
+// so that products of tiny sides do not underflow and products of huge sides do not overflow.
 template <class N>
 Vec3<N> flat_normal(const Corners<N>& corners) {
   const auto side = [&](const Vec3<N>& to) {
@@ -185,7 +185,8 @@ class Kernel final : public ShapeKernel<T> {
     return select(dot(normal, normal) > N(T(0)), t, infinity);
   }
 
-  // Calls visit(i, lanes, mesh, triangle) for each register of `groups` and each triangle hit in it.
+  // Calls visit(i, lanes, mesh, triangle) for each register i of `groups` and each moving triangle that some
+  // of its lanes hit.
   template <class Visit>
   void for_each_hit(const HitBatch<T>& hits, const LaneGroups& groups, const Visit& visit) const {
     for (const int i : groups) {

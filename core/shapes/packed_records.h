@@ -127,7 +127,7 @@ class PackedRecords final : public PackedPrimitives<T> {
   struct Block {
     Core<B> core;  // empty lanes repeat the last filled one
     std::array<IndexOf<T>, kB> id;
-    unsigned count;  // number of filled lanes, which precede the empty ones
+    unsigned count;  // number of filled lanes; they precede the empty lanes
     unsigned filled() const { return (1u << count) - 1u; }
   };
 

@@ -20,7 +20,7 @@
 // and `make_shape_set<Sphere>` as its factory. Formulas are evaluated for scalars and for lanes.
 namespace orrery {
 
-// Records converted to the render's precision.
+// List of records, converted to the render's precision.
 template <template <class> class Record, class T>
 class PlainRecords {
  public:
@@ -41,8 +41,7 @@ class PlainRecords {
   std::vector<Record<T>> records_;
 };
 
-// Writes `s` to the lanes `mine` of register i. Turns normals to the side that rays along `direction` come
-// from.
+// Writes `s` to the lanes `mine` of register i. Turns normals against `direction`, the direction of the rays.
 template <class T>
 [[gnu::always_inline]] inline void put_surface(const Surface<Lanes<T>>& s, const Vec3<Lanes<T>>& direction,
                                                int i, const MaskOf<Lanes<T>>& mine, SurfaceBatch<T>& out) {

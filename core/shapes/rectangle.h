@@ -22,7 +22,7 @@ struct Rectangle {
   }
   Patch patch() const { return {Patch::Kind::rectangle, corner, a, b}; }
 
-  // Coordinates of a point along `a` and `b`; in [0, 1] inside the rectangle.
+  // Coordinates of a point along `a` and `b`, as multiples of their lengths. In [0, 1] inside the rectangle.
   struct Shares {
     N u, v;
   };

@@ -6,7 +6,9 @@
 
 namespace orrery {
 
-// Returns all shape types, in the order in which primitives are numbered.
+// Returns all shape types, in the order in which primitives are numbered. Thread-safe. The contracts of
+// shapes, including threads and errors, are in core/model/shape.h. primitive_set.h describes how to write a
+// type.
 std::span<const ShapeType> shape_types();
 
 }  // namespace orrery

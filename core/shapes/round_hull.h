@@ -7,8 +7,8 @@
 namespace orrery {
 
 // Returns the half-extents along x, y and z of a circle of radius 1 perpendicular to the unit vector `axis`.
-// Each is sqrt(1 - a^2) for one component a, but computed from the other two: 1 - a^2 rounds to 0 for a tilt
-// below 1.5e-8 radians.
+// A half-extent is sqrt(1 - a^2) for one component a of `axis`. It is computed from the other two components,
+// because 1 - a^2 rounds to 0 for a tilt below 1.5e-8 radians.
 inline Vec3d round_reach(const Vec3d& axis) {
   return {std::hypot(axis.y, axis.z), std::hypot(axis.x, axis.z), std::hypot(axis.x, axis.y)};
 }

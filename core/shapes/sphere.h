@@ -37,10 +37,11 @@ struct Ball {
     return select(meets, nearest, infinity);
   }
 
-  // Returns false for spheres that no active ray of the packet can hit. Along x, a ray passes the centre's z
-  // at an offset of x - shear * z. It misses if this offset exceeds the radius over the cosine of its angle
-  // with z. The packet misses if this is true, on the same side, for both ends of the range of shears. The
-  // same test applies along y. The radius is padded for the rounding of the offset.
+  // Returns false for spheres that no active ray of the packet can hit. x, y and z are coordinates of the
+  // centre in the axes of the packet, relative to the rays' origin. At depth z, the centre is at an offset of
+  // x - shear * z from a ray. The ray misses if the offset exceeds the radius divided by the cosine of the
+  // angle between ray and z axis. The packet misses if this is true, on the same side, for both ends of its
+  // range of shears. y is tested in the same way. The radius is padded for the rounding of the offset.
   MaskOf<N> may_meet(const Packet<ScalarOf<N>>& packet) const {
     using T = ScalarOf<N>;
     if (!packet.one_origin) return MaskOf<N>(true);

@@ -23,14 +23,14 @@ template <class N, class V, class O>
 
 }  // namespace detail
 
-// Point in ray space: axes are permuted so that z is the largest component of the ray's direction, and
-// sheared so that the ray runs along z.
+// Point in ray space. The axes are permuted so that z is the axis of the largest component of the ray's
+// direction, and sheared so that the ray runs along z.
 template <class N>
 struct Sheared {
   N x, y, z;
 };
 
-// Transform to ray space with separate axes for each lane.
+// Transform to ray space, with separate axes for the ray of each lane.
 template <class N>
 class OwnAxes {
  public:
@@ -93,8 +93,8 @@ template <class N, class Axes, class V>
   return {select(met, t, infinity), u * inverse, v * inverse, w * inverse};
 }
 
-// Values at the corners of a triangle, such as positions or normals. The intersection test needs positions
-// only.
+// Values at the corners of a triangle, such as positions or normals. The functions except mix() require
+// positions.
 template <class N>
 struct Corners {
   Vec3<N> a, b, c;
@@ -111,9 +111,9 @@ struct Corners {
   Lanes<T> distance(const Packet<T>& packet) const requires std::is_same_v<T, N> {
     return intersect_triangle<Lanes<T>>(SharedAxes<Lanes<T>, Packet<T>>(packet), a, b, c).t;
   }
-  // Returns false for triangles that no active ray of the packet can hit: their corners, sheared for any of
-  // these rays, are on one side of the x or y axis. Rounding is monotonic, so a rounded shear stays between
-  // the rounded limits.
+  // Returns false for triangles that no active ray of the packet can hit: in the ray space of each of these
+  // rays, all corners are on the same side of the ray along x or along y. Rounding is monotonic, so the
+  // rounded coordinates of a ray are between the rounded coordinates for both ends of the range of shears.
   MaskOf<N> may_meet(const Packet<ScalarOf<N>>& packet) const {
     if (!packet.one_origin) return MaskOf<N>(true);
     return !misses_side(packet, 0) && !misses_side(packet, 1);

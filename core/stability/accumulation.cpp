@@ -7,7 +7,7 @@
 namespace orrery {
 namespace {
 
-// Scene with a constant background. Its only object is a ball behind the camera.
+// Scene with a constant background. The only object is a ball behind the camera.
 constexpr const char* kSky = R"({"version": 1, "background": [0.1, 0.1, 0.1],
   "camera": {"type": "perspective", "eye": [0, 0, 4], "look_at": [0, 0, 0]}, "materials": {"m": {"type": "rough"}},
   "objects": [{"type": "sphere", "center": [0, 0, 900], "radius": 1, "material": "m"}]})";

@@ -39,7 +39,7 @@ StabilityFigures deviations(double height) {
 StabilityFigures measure() {
   LineChart chart{"area-light",
                   "Noise of one sample of a square light of side 1 m",
-                  "distance from its centre, m",
+                  "distance from the centre of the light, m",
                   "standard deviation / mean",
                   true,
                   true,

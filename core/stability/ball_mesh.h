@@ -47,14 +47,14 @@ struct BallMesh {
     return found;
   }
 
-  // Returns a ray with positions rounded to T. Its origin is random and at most 1 m from `center`. Its target
-  // is `vertex` or the midpoint of an edge at it, so the ray must hit a triangle of `fan`. REQUIRES: `fan` is
-  // around(vertex).
+  // Returns a ray with coordinates rounded to T. The origin is random, at most 1 m from `center`. The target
+  // is `vertex` or the midpoint of an edge at `vertex`, so the ray must hit a triangle of `fan`. REQUIRES:
+  // `fan` is around(vertex).
   template <class T>
   Ray<T> ray_at(int vertex, const std::vector<int>& fan, const Vec3d& center, SplitMix& random) const {
     const auto& triangle = triangles[static_cast<std::size_t>(
         fan[static_cast<std::size_t>(random.below(static_cast<int>(fan.size())))])];
-    const int other = triangle[static_cast<std::size_t>(random.below(3))];  // may be the vertex itself
+    const int other = triangle[static_cast<std::size_t>(random.below(3))];  // may be `vertex` itself
     const Vec3<T> a(positions[static_cast<std::size_t>(vertex)]),
         b(positions[static_cast<std::size_t>(other)]);
     const Vec3<T> origin(center + random.in_cube(0.57));

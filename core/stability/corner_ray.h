@@ -8,13 +8,13 @@
 
 namespace orrery {
 
-// Axis-aligned box and a ray to test it with.
+// Axis-aligned box, and a ray that is tested against the box.
 template <class N>
 struct BoxTest {
   Vec3<N> lo, hi, origin, direction;
 
-  // Moves ray and box so that the ray's origin is 0. The slab test pads by the rounding of the origin, and
-  // this padding could hide errors. REQUIRES: lo - origin and hi - origin are exact.
+  // Moves ray and box so that the ray's origin is 0. Otherwise, the padding of the slab test for the rounding
+  // of the origin could hide errors. REQUIRES: lo - origin and hi - origin are exact.
   void start_from_zero() {
     lo = lo - origin;
     hi = hi - origin;
@@ -27,8 +27,8 @@ struct BoxTest {
   }
 };
 
-// Returns a ray that hits a corner of a flat box exactly, at a t that is a power of two. All coordinates are
-// integer multiples of `unit`, small enough that corner - origin is exact.
+// Returns a flat box and a ray that hits a corner of the box exactly, at a distance t that is a power of two.
+// All coordinates are integer multiples of `unit`, small enough that corner - origin is exact.
 template <class T>
 BoxTest<T> ray_through_a_corner(SplitMix& random, T unit) {
   constexpr int kBits = std::numeric_limits<T>::digits - 2;

@@ -17,8 +17,7 @@ bool textbook_meets(const Ray<float>& ray) {
   return b * b - 4 * a * c >= 0;
 }
 
-// Returns the exact result, computed in double: whether the line of the ray passes the centre at a distance
-// of at most 1.
+// Returns the exact result, computed in double: whether the line of the ray is at most 1 from the centre.
 bool meets(const Ray<float>& ray) {
   const Vec3d o(ray.origin), d(ray.direction);
   const Vec3d closest = o - d * (dot(o, d) / dot(d, d));

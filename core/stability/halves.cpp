@@ -38,8 +38,8 @@ std::vector<double> means_of(const TileSums& sums) {
   return means;
 }
 
-// Returns half of the difference between the mean of the even and the mean of the odd samples, for each
-// pixel.
+// Returns, for each pixel, half of the difference between the mean of the samples with even numbers and the
+// mean of the samples with odd numbers.
 std::vector<double> even_odd_differences(SampledTile& tile) {
   std::vector<double> differences(kSide * kSide), before(kSide * kSide);
   for (int sample = 0; sample < kSamples; ++sample) {
@@ -75,7 +75,7 @@ StabilityRow halves_row() {
       "RMS error of an image of an edge, estimated from its 16 samples per pixel: factor between estimate "
       "and true error",
       "1",
-      "even samples compared with odd ones (Dammertz and others 2010)",
+      "samples with even numbers compared with samples with odd numbers (Dammertz and others 2010)",
       4,
       "first half of the samples compared with the second half; both halves are low-discrepancy nets",
       1.6,

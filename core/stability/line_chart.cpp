@@ -11,8 +11,8 @@ namespace {
 constexpr double kWidth = 660, kHeight = 360, kLeft = 84, kRight = 440, kTop = 48, kBottom = 292,
                  kZeroLane = 26;
 
-// Returns the axis whose range contains the values. A linear axis also contains 0. A logarithmic axis ignores
-// values of at most 0.
+// Returns an axis whose range contains the values. The range of a linear axis also contains 0. A logarithmic
+// axis ignores values of at most 0.
 Axis axis_of(std::vector<double> values, bool logarithmic, double from, double to) {
   if (logarithmic) std::erase_if(values, [](double value) { return value <= 0; });
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
@@ -90,7 +90,7 @@ class LineDrawing {
 
   const LineChart& chart_;
   Axis x_{}, y_{};
-  bool has_zero_ = false;  // a logarithmic y axis has values of 0, drawn in a lane below it
+  bool has_zero_ = false;  // values of 0 are drawn in a lane below a logarithmic y axis
   std::string text_;
 };
 

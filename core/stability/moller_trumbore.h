@@ -9,8 +9,8 @@ namespace orrery {
 
 // Returns the distance to a triangle, or +infinity for a miss (Moeller, Trumbore, "Fast, Minimum Storage
 // Ray/Triangle Intersection", Journal of Graphics Tools, 1997). Determinants of at most `epsilon` in
-// magnitude count as 0; the printed code uses 1e-6. Rays leak between adjacent triangles, so only stability
-// rows use it.
+// magnitude count as 0. The published code uses 1e-6. Rays leak between adjacent triangles, so renders do not
+// use this function.
 template <class T>
 T moller_trumbore(const Ray<T>& ray, const Vec3<T>& a, const Vec3<T>& b, const Vec3<T>& c, T epsilon) {
   constexpr T kMissed = std::numeric_limits<T>::infinity();

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kShininess = 50, kFactor = 4.02;
 
-// Returns the unit vector at the angle `from_normal` from +z and the azimuth `about`, in degrees.
+// Returns the unit vector at the angle `from_normal` from +z and at the azimuth `about`, both in degrees.
 Vec3d direction_at(double from_normal, double about) {
   const auto theta = sine_cosine_turns(from_normal / 360), phi = sine_cosine_turns(about / 360);
   return {theta.sine * phi.cosine, theta.sine * phi.sine, theta.cosine};
@@ -28,8 +28,8 @@ double phong(const Vec3d& light, const Vec3d& viewer) {
   return c16 * c16 * c16 * c2;
 }
 
-// Returns the largest differences over viewers whose azimuth is within `about_most` degrees of the mirrored
-// light's. 0 selects the plane of incidence, on both sides of the normal.
+// Returns the largest differences over viewers whose azimuth is within `about_most` degrees of the azimuth of
+// the mirrored light. If `about_most` is 0, uses the plane of incidence, on both sides of the normal.
 StabilityFigures differ_at(double light_degrees, double about_most) {
   Rough<double> blinn{}, rough{};
   blinn.shininess = kFactor * kShininess;

@@ -10,6 +10,7 @@ namespace orrery {
 namespace {
 
 constexpr int kSide = 32;
+// Fraction of a pixel's area that its dot covers, and the error limit of both methods.
 constexpr double kShare = 0.01, kError = 0.01;
 
 // Returns a scene with a white dot at a random position in each pixel, over 1 % of the pixel's area.
@@ -37,8 +38,8 @@ RenderRequest request_of() {
   return request;
 }
 
-// Returns the mean of an image with a separate sample count per pixel. After 4, 8, 16, ... 512 samples, a
-// pixel stops if their mean differs from that of the first half by at most kError.
+// Returns the mean of an image with a separate sample count per pixel. A pixel stops after 4, 8, 16, ... or
+// 512 samples, once the mean of its samples differs from the mean of their first half by at most kError.
 double mean_by_pixels(const std::shared_ptr<const Scene>& scene) {
   constexpr int kMost = 512;
   RenderRequest request = request_of();
@@ -85,9 +86,9 @@ StabilityRow rare_feature_row() {
       "image of 1,024 pixels with a dot on 1 % of each, rendered to an error of 0.01: relative error of the "
       "mean",
       "%",
-      "a sample count per pixel: each stops when the halves of its samples agree",
+      "separate sample count per pixel: a pixel stops once both halves of its samples agree",
       70,
-      "one sample count for the image, from the sample halves of all pixels",
+      "one sample count for the image, chosen from the sample halves of all pixels",
       3,
       measure};
 }

@@ -13,8 +13,8 @@ namespace orrery {
 // 99,999 are printed as integers. The unit "1" is not printed.
 std::string figure_text(double value, const char* unit);
 
-// Returns three lines per row, the first with its id, and a last line with the number of rows within their
-// bounds.
+// Returns three lines per row, and a last line with the number of rows within their bounds. The first line of
+// a row begins with the id.
 std::string stability_text(std::span<const StabilityResult> results);
 
 // Returns the page docs/stability.md, which refers to charts as pictures/stability-<name of the chart>.svg.

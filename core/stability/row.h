@@ -5,7 +5,8 @@
 #include <utility>
 #include <vector>
 
-// Stability rows: each compares the error of a known numerical method with that of the method used here.
+// Stability rows. Each row compares the error of a known numerical method with the error of the method that
+// orrery uses for the same quantity.
 namespace orrery {
 
 // Line chart. A logarithmic y axis shows values of 0 in a lane below the axis.
@@ -20,7 +21,7 @@ struct LineChart {
   std::vector<Series> series;
 };
 
-// Errors of both methods in the row's unit: finite and not negative. 0 is exact.
+// Errors of both methods in the row's unit, finite and not negative. 0: exact.
 struct StabilityFigures {
   double known, ours;
   std::optional<LineChart> chart = {};
@@ -31,14 +32,13 @@ struct StabilityRow {
   const char* name;      // a few words
   const char* quantity;  // "quantity: error that is measured"
   const char* unit;      // "1" for a ratio
-  // Known method with its source, and a lower bound of its error.
+  // Known method with its source, and a lower bound of the error of this method.
   const char* known;
   double known_at_least;
-  // Method used here, and an upper bound of its error.
+  // Method that orrery uses, and an upper bound of the error of this method.
   const char* ours;
   double ours_at_most;
-  // Pure function with the same results on every machine, because it uses only IEEE operations and square
-  // roots.
+  // Pure function. Uses only IEEE operations and square roots, so results are the same on every machine.
   StabilityFigures (*measure)();
 };
 

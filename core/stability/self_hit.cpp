@@ -11,14 +11,14 @@ namespace {
 const Vec3d kNormal = safe_normalize(Vec3d(1, 2, 3));
 
 // Returns whether a ray that starts at the computed hit o + t d meets the plane again beyond a fixed epsilon
-// of 1e-4. Introductory texts use this test: Shirley, "Ray Tracing in One Weekend", with 1e-3.
+// of 1e-4. Introductory texts use such an epsilon, e.g. 1e-3 in Shirley, "Ray Tracing in One Weekend".
 bool meets_again(const Ray<float>& ray, const Vec3f& at, const Vec3f& normal, const Vec3f& direction) {
   const float t = dot(at - ray.origin, normal) / dot(ray.direction, normal);
   const Vec3f hit = ray.at(t);
   return dot(at - hit, normal) / dot(direction, normal) > 1e-4f;
 }
 
-// Returns the percentage of rays that leave a plane through (c, c, c) and hit it again.
+// Returns the percentage of rays that leave a plane through (c, c, c) and hit the plane again.
 StabilityFigures self_hits_at(double c) {
   constexpr int kBatches = 20;
   OneShape<float> plane(printed(R"({"type": "plane", "point": [%.17g, %.17g, %.17g], "normal": [1, 2, 3],
@@ -67,7 +67,7 @@ StabilityFigures measure() {
 StabilityRow self_hit_row() {
   return {"A16",
           "Shadow acne",
-          "rays that leave a plane through (1e5, 1e5, 1e5), in float: rays that hit it again",
+          "rays that leave a plane through (1e5, 1e5, 1e5), in float: rays that hit the plane again",
           "%",
           "hit at o + t d; hits nearer than a fixed epsilon of 1e-4 are ignored",
           30,

@@ -8,8 +8,8 @@
 namespace orrery {
 namespace {
 
-// Returns the weights of the vertices from edge functions whose products are rounded before subtraction
-// (Woop, Benthin, Wald 2013, as printed).
+// Returns the weights of the vertices. Products of the edge functions are rounded before subtraction, as
+// published (Woop, Benthin, Wald 2013).
 Vec3f rounded_weights(const Ray<float>& ray, const Corners<float>& corners) {
   const OwnAxes<float> axes(ray);
   const Sheared<float> a = axes(corners.a), b = axes(corners.b), c = axes(corners.c);

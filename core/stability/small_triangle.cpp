@@ -7,8 +7,8 @@
 namespace orrery {
 namespace {
 
-// Counts the right triangles that a ray from 1 m above misses, with legs from 0.99 m to 0.99 pm. The
-// determinants are the squares of the legs.
+// Counts the right triangles that a ray from 1 m above misses. The legs are 0.99 m to 0.99 pm long. The
+// determinant of a triangle is the square of its leg.
 StabilityFigures measure() {
   StabilityFigures missed{0, 0};
   double side = 0.99;

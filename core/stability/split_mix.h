@@ -22,6 +22,7 @@ class SplitMix {
   }
   double unit() { return static_cast<double>(bits() >> 11) * 0x1p-53; }  // in [0, 1)
   double between(double low, double high) { return low + (high - low) * unit(); }
+  // Returns an integer in [0, count).
   int below(int count) { return static_cast<int>(bits() % static_cast<std::uint64_t>(count)); }
   Vec3d in_cube(double half) { return {between(-half, half), between(-half, half), between(-half, half)}; }
 
@@ -35,6 +36,7 @@ inline Vec3d direction_from(SplitMix& random) {
   const auto [sine, cosine] = sine_cosine_turns(random.unit());
   return {across * cosine, across * sine, z};
 }
+// Returns a unit vector, uniform on the hemisphere around `normal`.
 inline Vec3d direction_above(SplitMix& random, const Vec3d& normal) {
   const Vec3d d = direction_from(random);
   return dot(d, normal) < 0 ? -d : d;

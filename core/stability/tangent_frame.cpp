@@ -16,7 +16,8 @@ Tangents<float> frisvad_tangents(const Vec3f& n) {
   return {{1 - n.x * n.x * a, b, -n.x}, {b, 1 - n.y * n.y * a, -n.y}};
 }
 
-// Returns the largest deviation of lengths from 1 and of dot products from 0.
+// Returns the largest deviation of the tangents' lengths from 1, and of dot products of tangents and normal
+// from 0.
 double error_of(const Tangents<float>& basis, const Vec3f& normal) {
   const Vec3d n(normal), a(basis.first), b(basis.second);
   return std::max({std::abs(length(a) - 1), std::abs(length(b) - 1), std::abs(dot(a, b)), std::abs(dot(a, n)),

@@ -10,8 +10,8 @@ namespace {
 constexpr double kThreshold = 1.0 / 255;
 
 // Scene with two slabs of glass in front of a background of radiance 1. A black plane behind the camera
-// absorbs reflected rays. Each surface reflects half of the light at normal incidence. Four such surfaces
-// transmit 1 / 5.
+// absorbs reflected rays. Each of the four surfaces reflects half of the light at normal incidence. Together,
+// with all interreflections, they transmit 1 / 5.
 constexpr const char* kSlabs = R"({"version": 1, "background": [1, 1, 1],
   "camera": {"type": "orthographic", "eye": [0, 0, 5], "look_at": [0, 0, 0], "height": 1},
   "materials": {"glass": {"type": "refractive", "ior": 5.82842712474619, "fresnel": "exact"},

@@ -19,7 +19,7 @@ StabilityFigures measure() {
 StabilityRow unit_random_row() {
   return {"A33",
           "Random numbers below 1",
-          "the 256 largest 32-bit integers, converted to floats in [0, 1): results of 1",
+          "the 256 largest 32-bit integers, converted to floats in [0, 1): results equal to 1",
           "of 256",
           "float(bits) / 2^32",
           128,

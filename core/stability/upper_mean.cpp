@@ -7,8 +7,8 @@
 namespace orrery {
 namespace {
 
-// Measures how often the upper end of a 95 % interval is below the true mean, in %. A run has 256 values,
-// each 1 with probability 1/2000, otherwise 0. Most runs contain only zeros.
+// Measures the percentage of runs in which the upper end of a one-sided 95 % interval is below the true mean.
+// A run has 256 values. Each value is 1 with probability 1/2000, otherwise 0. Most runs contain only zeros.
 StabilityFigures measure() {
   constexpr int kRuns = 400, kCount = 256;
   constexpr double kShare = 0.0005, kNormalQuantile = 1.645;
@@ -20,7 +20,7 @@ StabilityFigures measure() {
     for (int i = 0; i < kCount; ++i) {
       const double x = random.unit() < kShare ? 1 : 0;
       all.add(x);
-      sum += x;  // the sum of squares is the same
+      sum += x;  // also the sum of squares, since x is 0 or 1
     }
     const double mean = sum / kCount, variance = mean - mean * mean;
     missed.ours += all.upper_mean(0.05) < kShare;
@@ -34,8 +34,8 @@ StabilityFigures measure() {
 StabilityRow upper_mean_row() {
   return {"certificate-26",
           "Confidence interval of a mean",
-          "one-sided 95 % intervals for a mean of 1/2,000, from 256 values of 0 or 1: intervals that miss "
-          "the mean",
+          "256 Bernoulli samples, mean 1/2,000: share of one-sided 95 % confidence intervals that miss the "
+          "true mean",
           "%",
           "normal distribution (central limit theorem)",
           80,

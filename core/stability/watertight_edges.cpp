@@ -10,7 +10,7 @@ namespace {
 
 // Measures the percentage of about 10,000 rays that leave the closed mesh between its triangles.
 StabilityFigures measure() {
-  constexpr int kRaysAtEach = 9;  // at each of 1106 vertices
+  constexpr int kRaysAtEach = 9;  // rays toward each of the 1106 vertices
   const BallMesh mesh(2, Vec3d());
   SplitMix random(7);
   int rays = 0, known = 0, ours = 0;

@@ -5,7 +5,8 @@
 namespace orrery {
 
 // Adds the radiance of the rays of `groups`, times their throughput, to the sums of their camera rays in
-// batch order. Sums are indexed by PathBatch::slot. Camera rays set their sums instead.
+// batch order. Sums are indexed by PathBatch::slot. Camera rays (depth 0) set their sums. For other depths,
+// overwrites `radiance` with the products.
 template <class T>
 void deposit(const PathBatch<T>& paths, const LaneGroups& groups, Vec3Array<T>& radiance,
              Vec3Array<T>& slots) {

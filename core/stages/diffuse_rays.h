@@ -4,8 +4,9 @@
 
 namespace orrery {
 
-// Emitted light at diffuse lobes, found along one sampled direction per surface point. It is weighted against
-// light sampling and excludes reflected light. Not thread-safe: each object owns its batches.
+// Light of emitters and the background that diffuse lobes reflect, found by tracing one sampled direction per
+// surface point. The light is weighted against light sampling. Light that the hit surfaces reflect is not
+// included. Not thread-safe: each object owns its batches.
 template <class T>
 class DiffuseRays {
  public:
@@ -14,7 +15,7 @@ class DiffuseRays {
               SampledLight<T>& light)
       : geometry_(geometry), accelerator_(accelerator), plan_(plan), light_(light) {}
 
-  // Adds the reflected light to the radiance of the surfaces of `met`.
+  // Adds the light that the surfaces of `met` reflect to `radiance`, and the rays to `counts`.
   void add(const PathBatch<T>& paths, const HitBatch<T>& hits, const PathDraws<T>& draws,
            const SurfaceBatch<T>& surface, const LaneGroups& met, Vec3Array<T>& radiance,
            TraceCounts& counts);
@@ -30,7 +31,7 @@ class DiffuseRays {
   const Plan& plan_;
   SampledLight<T>& light_;
   ScatterBatch<T> drawn_;
-  PathBatch<T> rays_;  // each in the lane of its surface point
+  PathBatch<T> rays_;  // the ray of a surface point has the same lane
   HitBatch<T> hits_;
   SurfaceBatch<T> surface_;  // only `material` is filled
   Vec3Array<T> found_;

@@ -9,8 +9,8 @@
 
 namespace orrery {
 
-// Direct light from all light sources, evaluated one after another. Used by techniques that trace ray trees.
-// Not thread-safe: each object owns its batches.
+// Direct light from all light sources, evaluated one after another. Used by techniques derived from
+// SpecularTree. Not thread-safe: each object owns its batches.
 template <class T>
 class DirectLight {
  public:
@@ -20,7 +20,7 @@ class DirectLight {
 
   // Sets `radiance` of lanes with lit materials to their reflected ambient light. Adds the reflected light of
   // each source unless Plan::direct_light is false. `groups` are the registers with a lit material. Checks
-  // `checkpoint` before each light and skips the remaining lights once cancelled.
+  // `checkpoint` before each light and skips the remaining lights if the work is cancelled.
   void add(const PathBatch<T>& paths, const PathDraws<T>& draws, const SurfaceBatch<T>& surface,
            const LaneGroups& groups, Vec3Array<T>& radiance, TraceCounts& counts,
            const Checkpoint& checkpoint);

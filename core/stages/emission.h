@@ -4,8 +4,8 @@
 
 namespace orrery {
 
-// Returns the emitted radiance of the surfaces of register i; 0 in lanes that missed or do not emit.
-// REQUIRES: the register's materials are set.
+// Returns the radiance that the surfaces of register i emit, or 0 in lanes that missed or do not emit.
+// REQUIRES: the materials of the register are set, and geometry.emission is not empty.
 template <class T>
 Vec3<Lanes<T>> emission_at(const Geometry<T>& geometry, const SurfaceBatch<T>& surface, int i) {
   using N = Lanes<T>;

@@ -4,7 +4,7 @@
 
 namespace orrery {
 
-// Selects the lights that a surface samples: all lights of the scene, in order, each with probability 1.
+// Selects the lights that illuminate a surface: all lights of the scene, in order, each with probability 1.
 template <class T>
 class LightSelector {
  public:

@@ -24,11 +24,11 @@ LightCluster<double> cluster_of(const LightBounds& light) {
 // Returns `normal` or its opposite, whichever is closer to `axis`.
 Vec3d aligned(const Vec3d& normal, const Vec3d& axis) { return dot(normal, axis) < 0 ? -normal : normal; }
 
-// Quantities that determine the cost of a group of lights.
+// Quantities that determine the cost of a group of lights in the tree.
 struct Extent {
   Boundsd box;
   double energy = 0;
-  Vec3d axis;  // sum of normals, aligned to one side
+  Vec3d axis;  // sum of normals, each flipped to the side of the preceding sum
   int count = 0;
 
   void include(const Extent& other) {
@@ -38,8 +38,8 @@ struct Extent {
     count += other.count;
   }
   // Returns energy times squared diagonal times a factor for the spread of the normals, from 1 for equal
-  // normals to 3. The spread is that of a uniformly filled cap, whose mean normal has the length (1 + cosine)
-  // / 2.
+  // normals to 3. The spread is estimated as if the normals filled a spherical cap uniformly. The mean normal
+  // of a cap has the length (1 + cosine of the half angle) / 2.
   double cost() const {
     if (count == 0) return 0;
     const Vec3d across = box.hi - box.lo;
@@ -48,7 +48,7 @@ struct Extent {
   }
 };
 
-// Split policy of the tree builder.
+// Determines where the tree builder splits a group of lights.
 class SplitPolicy {
  public:
   explicit SplitPolicy(std::span<const LightBounds> lights) : lights_(lights) {
@@ -70,9 +70,11 @@ class SplitPolicy {
     return all;
   }
 
-  // Reorders the lights into two parts and returns the size of the first. Lights at infinite distance come
-  // first and form a part. Other lights are split at the plane between bins along an axis that has the lowest
-  // total cost of both parts. Without a plane, the halves are equal. REQUIRES: at least two lights.
+  // Reorders the lights into two parts and returns the size of the first. If only some lights are at infinite
+  // distance, these lights form the first part. Lights at finite distance are split at the plane between two
+  // bins with the lowest cost. The cost of a plane is the total cost of both parts, times the ratio of the
+  // longest extent to the extent along the axis. If there is no plane, the parts have equal size. REQUIRES:
+  // at least two lights.
   std::size_t split(Numbers numbers) const {
     const auto parallel = [this](std::int32_t n) { return lights_[static_cast<std::size_t>(n)].parallel; };
     const auto near = std::stable_partition(numbers.begin(), numbers.end(), parallel);
@@ -123,7 +125,7 @@ class SplitPolicy {
   }
 
   std::span<const LightBounds> lights_;
-  double scale_;  // metres; distance at which energies are compared
+  double scale_;  // distance in metres at which the energies of lights are compared
 };
 
 }  // namespace
@@ -143,8 +145,9 @@ struct LightTree<T>::Builder {
     double cost;
   };
 
-  // Merges lights into a cluster. Its attenuation is never below that at the radius of its bounding sphere.
-  // Harmonic means of the attenuation coefficients preserve the total light that arrives far away.
+  // Merges lights into a cluster. At any distance, the attenuation is at least the attenuation at the radius
+  // of the bounding sphere. Harmonic means of the attenuation coefficients preserve the total light that
+  // arrives far away.
   LightCluster<double> cluster(Numbers numbers) const {
     Boundsd box;
     Vec3d axis, reach;  // reach: sums of strength / coefficient
@@ -221,7 +224,7 @@ struct LightTree<T>::Builder {
   }
 };
 
-// Traversal from the root that consumes one random number.
+// Traversal of the tree from the root to a light, which consumes one random number.
 template <class T>
 struct LightTree<T>::Descent {
   double u = 0;
@@ -259,7 +262,7 @@ double LightTree<T>::sum_of(const Node& node, Weights& weights) {
   return static_cast<double>(node.count);
 }
 
-// Evaluates one point, with members as lanes.
+// Weighs the members of a node for one point, with members as lanes.
 template <class T>
 double LightTree<T>::weigh(const Node& node, const Vec3<T>& position, Weights& weights) {
   using N = Lanes<T>;
@@ -274,7 +277,7 @@ double LightTree<T>::weigh(const Node& node, const Vec3<T>& position, Weights& w
   return sum_of(node, weights);
 }
 
-// Evaluates the root with points as lanes, since all points weigh the same members.
+// Weighs the members of the root with points as lanes, because all points use the same members.
 template <class T>
 typename LightTree<T>::Choices LightTree<T>::choose(const Vec3<Lanes<T>>& positions,
                                                     const std::array<double, kPoints>& u) const {

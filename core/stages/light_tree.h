@@ -11,7 +11,7 @@
 
 namespace orrery {
 
-// Light or cluster of lights, with the values that determine its importance; see LightBounds.
+// Light or cluster of lights, with the values that determine the importance: see LightBounds.
 template <class N>
 struct LightCluster {
   Vec3<N> centre, axis;
@@ -20,8 +20,8 @@ struct LightCluster {
   N strength, c0, c1, c2;
 
   // Returns an estimate of the light received at `position`: strength over attenuation, times an upper bound
-  // of the cosine at the lights. The bound is the cosine to the axis plus two sines: that of the spread of
-  // normals, and that of the angular radius of the bounding sphere.
+  // on the cosine at the lights. The bound is the cosine to the axis, plus the sine of the spread of the
+  // normals, plus the sine of the angular radius of the bounding sphere.
   N importance(const Vec3<N>& position) const {
     using std::abs;
     using T = ScalarOf<N>;
@@ -34,15 +34,16 @@ struct LightCluster {
 };
 
 // Selects a light for a point, with a probability roughly proportional to the light received there. A node
-// has up to 16 members: lights, or clusters with child nodes. Up to 16 lights therefore have individual
-// weights (Conty and Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", HPG 2018).
-// Built in double precision; ties keep the order of the lights. Immutable and thread-safe.
+// has up to 16 members: lights, or clusters with child nodes. A tree of up to 16 lights therefore has a
+// single node, in which each light has its own weight (Conty and Kulla, "Importance Sampling of Many Lights
+// with Adaptive Tree Splitting", HPG 2018). The tree is built in double precision. Equal lights keep their
+// order. Immutable and thread-safe.
 template <class T>
 class LightTree {
  public:
   static constexpr std::size_t kMembers = 16;
 
-  // Builds the tree. REQUIRES: at least one light.
+  // Builds the tree. Throws Cancelled. REQUIRES: at least one light.
   explicit LightTree(std::span<const LightBounds> lights);
 
   std::size_t size() const { return path_of_.size(); }
@@ -74,7 +75,7 @@ class LightTree {
   static double sum_of(const Node& node, Weights& weights);
 
   std::vector<Node> nodes_;             // root first
-  std::vector<std::uint64_t> path_of_;  // by light: member in each node, 4 bits per level, root lowest
+  std::vector<std::uint64_t> path_of_;  // by light: member on the path, 4 bits per level from the root
 };
 
 extern template class LightTree<float>;

@@ -8,9 +8,10 @@
 
 namespace orrery {
 
-// Small neural network: two hidden layers with ReLU, and one score per answer.
+// Small neural network: two hidden layers with ReLU, and one score per answer. Scores are log-odds: the
+// difference of two scores is the logarithm of the ratio of the probabilities of the answers.
 struct Network {
-  // With 32 hidden units, 10 % more shadow rays were proved occluded, for nearly three times the arithmetic.
+  // With 32 hidden units, 10 % more shadow rays are proved occluded, for nearly three times the arithmetic.
   static constexpr std::size_t kInputs = 6, kHidden = 16, kAnswers = 16;
   template <class N>
   using Inputs = std::array<N, kInputs>;
@@ -19,8 +20,8 @@ struct Network {
   template <class N>
   using Scores = std::array<N, kAnswers>;
 
-  // Offsets of the layers in `weights`. Each output of a layer has the weights of its inputs, followed by its
-  // bias.
+  // Offsets of the layers in `weights`. For each output of a layer, the weights of the inputs are stored,
+  // followed by the bias.
   static constexpr std::size_t kSecond = kHidden * (kInputs + 1);
   static constexpr std::size_t kThird = kSecond + kHidden * (kHidden + 1);
   static constexpr std::size_t kWeights = kThird + kAnswers * (kHidden + 1);
@@ -71,12 +72,12 @@ struct Network {
 };
 
 struct NetworkExample {
-  Network::Inputs<float> in;  // from about -1 to 1
+  Network::Inputs<float> in;  // each from about -1 to 1
   std::size_t answer;
 };
 
 struct TrainingOptions {
-  // With 8,000 steps, 5 % more shadow rays are proved occluded in scenes with many occlusions to prove.
+  // With 8,000 steps, 5 % more shadow rays are proved occluded in scenes with many occluded rays.
   int steps = 2000;
   int examples = 32;   // per step
   float rate = 3e-3f;  // learning rate of the first step; falls linearly to a tenth

@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kNoOccluder = 0;  // answer for rays that no candidate occludes
 
-// Returns up to 15 primitives that occlude the most samples, in descending order. Ties are sorted by
-// primitive number.
+// Returns up to 15 primitives that occlude the most samples, in descending order of the number of samples.
+// Ties are sorted by primitive number.
 std::vector<int> candidates_of(std::span<const OcclusionSample> samples) {
   std::map<int, int> met;
   for (const OcclusionSample& sample : samples)
@@ -35,8 +35,8 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-// Normalization of one coordinate of the ray origins to (-1, 1). Half of the samples get at most 1/2 in
-// magnitude, so that distant origins do not compress the near ones.
+// Normalization of one coordinate of the ray origins to (-1, 1). Half of the samples are mapped to
+// [-1/2, 1/2], so that distant origins do not compress the range of the others.
 struct CoordinateNormalization {
   double middle = 0, scale = 0;
 
@@ -91,8 +91,8 @@ class NetworkPredictor final : public Predictor<T> {
     network_ = train_network(examples);
   }
 
-  // Proposes the candidate with the best score if this score exceeds that of kNoOccluder minus
-  // kProposalMargin. NaN scores propose nothing.
+  // Proposes the most probable candidate, unless kNoOccluder is at least 10 times as probable. Scores are
+  // log-odds, so a ratio of 10 is a difference of kProposalMargin. Nothing is proposed if the scores are NaN.
   void propose(const RayBatch<T>& rays, const LaneGroups& groups,
                Array<IndexOf<T>>& primitive) const override {
     for (const int i : groups) {
@@ -113,8 +113,8 @@ class NetworkPredictor final : public Predictor<T> {
 
  private:
   using N = Lanes<T>;
-  static constexpr double kProposalMargin =
-      2.3;  // ln 10: a test costs a tenth of the traversal that it may save
+  // ln 10. A test of a primitive costs about a tenth of the traversal that it may save.
+  static constexpr double kProposalMargin = 2.3;
 
   std::vector<int> candidates_;
   InputNormalization normalization_;

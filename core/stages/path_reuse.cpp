@@ -11,7 +11,7 @@ namespace orrery {
 namespace {
 
 // Returns the indices of `keys`, sorted by key and then by index, in the low 32 bits of the elements. The
-// highest bits of a key select its bucket. Keys are random, so insertion sort then moves few elements.
+// highest bits of a key select its bucket. Keys are random, so the final insertion sort moves few elements.
 std::array<std::uint64_t, kBatch> in_order(const std::array<std::uint32_t, kBatch>& keys) {
   constexpr int kLowBits = 32 - std::countr_zero(static_cast<unsigned>(kBatch));
   std::array<std::uint16_t, kBatch + 1> begins{};
@@ -110,9 +110,9 @@ void PathReuse<T>::connect_own(Connections& own) {
   }
 }
 
-// Makes shadow rays from first vertices to the second vertices of their partners. The rays end early by the
-// rounding error of both vertices. First vertices whose own sample failed or was specular are included,
-// because their densities enter the weights.
+// Makes shadow rays from first vertices to the second vertices of their partners. The rays end before the
+// second vertex, by twice the rounding errors of both vertices. First vertices whose own sample failed or was
+// specular are included, because their densities enter the weights.
 template <class T>
 void PathReuse<T>::aim(int turn) {
   const N zero(T(0)), two(T(2));
@@ -141,7 +141,7 @@ void PathReuse<T>::connect(int turn, Connections& to, TraceCounts& counts) {
   for (const int i : connected) {
     const N t = shadow_.t_max.at(i);
     const N cosine = -dot(shadow_.direction.at(i), toward_normal_.at(i));
-    // Same condition as for sampled paths in continue_path().
+    // Same condition as for sampled directions in PathTracer::continue_path().
     const auto possible =
         t > zero && lobe_pdf_.at(i) > zero && cosine > zero && max_component(f_cos_.at(i)) > zero;
     const N change = select(possible, N(cosine / (t * t)), zero);  // converts solid angle to area
@@ -181,7 +181,8 @@ Vec3<Lanes<T>> PathReuse<T>::received(int i) const {
     const Connections& to = connections_[turn];
     const Arrival<N> arrival = records_at<Arrival, T>(arrivals_, partners_[turn], i);
     const auto drawn = arrival.inverse_density > zero;
-    if (turn == 0) sum = select(drawn, sum, weight_.at(i) * arrival.suffix);  // no density: own path only
+    // If the density is 0, only the path of the vertex itself contributes.
+    if (turn == 0) sum = select(drawn, sum, weight_.at(i) * arrival.suffix);
     const auto connected = drawn && to.density.at(i) > zero;
     sum = sum + select(connected, to.share.at(i) * arrival.suffix * arrival.inverse_density, Vec3<N>(zero));
   }

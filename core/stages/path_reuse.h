@@ -15,11 +15,11 @@ template <class N>
 struct SecondVertex {
   Vec3<N> position, geometric;
   N step;
-  N shared;  // 1, or 0 if no path may connect to it
+  N shared;  // 1 if paths may connect to the vertex, else 0
 };
 
-// Radiance reflected by a second vertex, and the inverse of the density with which its group samples the
-// vertex. The inverse is 0 if only its own path can reach the vertex.
+// Radiance that a second vertex reflects, and the inverse of the density per area with which the paths of the
+// group sample the vertex. The inverse is 0 if only the path of the vertex can reach it.
 template <class N>
 struct Arrival {
   Vec3<N> suffix;
@@ -27,9 +27,9 @@ struct Arrival {
 };
 
 // Path reuse within a tile. Each first vertex is connected to the second vertices of a random group of paths.
-// Groups change with each sample. Contributions are weighted with the densities of the whole group (Bekaert,
-// Sbert, Halton, "Accelerating Path Tracing by Re-Using Paths", EGWR 2002). The balance heuristic and traced
-// visibility keep the result unbiased. Not thread-safe: each object owns its batches.
+// The groups are different for each sample. Contributions are weighted with the densities of the whole group
+// (Bekaert, Sbert, Halton, "Accelerating Path Tracing by Re-Using Paths", EGWR 2002). The balance heuristic
+// and traced visibility keep the result unbiased. Not thread-safe: each object owns its batches.
 template <class T>
 class PathReuse {
  public:
@@ -51,8 +51,8 @@ class PathReuse {
   void keep_second(int i, const PathBatch<T>& paths, const SurfaceBatch<T>& surface,
                    const MaskOf<Lanes<T>>& shared);
 
-  // Returns sums of the radiance that second vertices reflect to first vertices, by camera ray. Throughputs
-  // of these sums are 1 at the second vertex.
+  // Returns sums of the radiance that second vertices reflect to first vertices, by camera ray. The
+  // throughput of contributions starts with 1 at the second vertex.
   Vec3Array<T>& suffixes() { return suffix_; }
   // Returns the weight of the direction sampled at the first vertex, by camera ray.
   const Vec3Array<T>& weights() const { return weight_; }
@@ -64,8 +64,8 @@ class PathReuse {
  private:
   using N = Lanes<T>;
   struct Connections {
-    Array<T> density;    // per area, with which this first vertex samples the partner's second vertex
-    Vec3Array<T> share;  // contribution of that vertex's radiance to the camera ray, per area
+    Array<T> density;    // per area: this first vertex samples the second vertex of the partner
+    Vec3Array<T> share;  // factor from the radiance of that vertex to the camera ray, per area
   };
   void connect_own(Connections& own);
   void connect(int turn, Connections& to, TraceCounts& counts);
@@ -78,13 +78,13 @@ class PathReuse {
   const int group_;
   const LaneGroups all_ = LaneGroups::covering(0, kBatch, kWidth<T>);
   LaneGroups kept_;  // registers with first vertices
-  // Partner of each camera ray in its group, by turn. At turn 0 each is its own partner.
+  // Partner of each camera ray in its group, by turn. At turn 0, every camera ray is its own partner.
   std::vector<Array<IndexOf<T>>> partners_;
   // First vertices by camera ray.
   SurfaceBatch<T> first_;
   Vec3Array<T> ray_, weight_;
-  Array<T> pdf_;                         // 0: other paths cannot sample the direction
-  Array<T> lit_;                         // 1 or 0
+  Array<T> pdf_;                         // per solid angle; 0: other paths cannot sample the direction
+  Array<T> lit_;                         // 1 or 0: see keep_first()
   std::vector<SecondVertex<T>> second_;  // by camera ray
   Vec3Array<T> suffix_;
   std::vector<Arrival<T>> arrivals_;  // by camera ray

@@ -24,7 +24,7 @@ class Random final : public Predictor<T> {
   std::uint64_t count_;
 };
 
-// Tests primitives against shadow rays.
+// Tests predicted occluders against shadow rays and counts the tests.
 template <class T>
 class OccluderVerifier {
  public:
@@ -62,8 +62,8 @@ class OccluderVerifier {
   AcceleratorCounts& counts_;
 };
 
-// Base class that passes closest() to the accelerator `behind_`. Even a free and correct prediction of the
-// nearest hit saves at most a tenth of the time (`script/bench prediction`).
+// Base class that passes closest() to the accelerator `behind_` without a prediction. Even a free and correct
+// prediction of the nearest hit would save at most a tenth of the time (`script/bench prediction`).
 template <class T>
 class Predicted : public Accelerator<T> {
  public:
@@ -102,8 +102,8 @@ class PredictorAccelerator final : public Predicted<T> {
   PredictorPtr<T> predictor_;
 };
 
-// occlude() does not return the occluder. closest() is therefore traced for one ray of each lot in which a
-// ray was occluded.
+// Proposes the occluder that was found last. Accelerator::occlude() does not report occluders. One occluded
+// ray of each lot is therefore traced by closest().
 template <class T>
 class LastOccluderCache final : public Predicted<T> {
  public:
@@ -127,9 +127,9 @@ class LastOccluderCache final : public Predicted<T> {
   }
 
  private:
-  static constexpr int kLot = 64;  // rays traced together
+  static constexpr int kLot = 64;  // rays per lot; the last occluder is updated after each lot
 
-  // Returns the occluder of the last ray that became occluded, or kNoPrimitive.
+  // Returns the occluder of the last ray that occlude() found occluded, or kNoPrimitive.
   int occluder(RayBatch<T>& rays, const Array<T>& before, const LaneGroups& groups,
                AcceleratorCounts& counts) const {
     using N = Lanes<T>;

@@ -12,7 +12,7 @@ static_assert(kDigits * kDigitBits == 6 * kCellBits);
 
 using Keys = std::array<std::uint32_t, kBatch>;
 
-// Returns (x - lo) * scale, clamped to [0, kCells - 1]. min_first and max_first ignore NaN, so any x has a
+// Returns (x - lo) * scale, clamped to [0, kCells - 1]. min_first and max_first ignore NaN, so every x has a
 // cell.
 template <class N>
 auto cell_of(const N& x, const N& lo, const N& scale) {
@@ -44,14 +44,14 @@ struct Extent {
     hi = max_first(hi, select(active, x, hi));
   }
   T least() const { return stdx::hmin(lo); }
-  // Returns cells per metre, or 0 if the range is empty or infinite.
+  // Returns the cells per metre, or 0 if the range is empty, a single value or infinite.
   T scale() const {
     const T size = stdx::hmax(hi) - least();
     return size > 0 ? T(kCells) / size : T(0);
   }
 };
 
-// Writes the sort keys of the active rays and returns their places in the batch, unsorted.
+// Sets the sort keys of the active rays. Returns the places of these rays in the batch, in batch order.
 template <class T>
 RayOrder keys_of(const RayBatch<T>& rays, const LaneGroups& groups, Keys& keys) {
   using N = Lanes<T>;

@@ -62,8 +62,8 @@ void SampledLight<T>::add_sources() {
   if (environment_) add(geometry_.environment.get()).back() = 0;
 }
 
-// Adds the second random number to the low bits of the first, because a light among many has a small
-// probability.
+// Extends the first random number by the bits of the second, because a light among many may have a
+// probability below 2^-24.
 template <class T>
 void SampledLight<T>::choose(const PathDraws<T>& draws, const SurfaceBatch<T>& surface,
                              const LaneGroups& groups) {

@@ -10,13 +10,13 @@ namespace orrery {
 template <class T>
 class SampledLight {
  public:
-  // `drawn`: lobes whose sampled rays may hit light as well. They are all lobes, or all except the diffuse
-  // ones. Light on the diffuse ones is then weighted against DiffuseRays, if these are traced. Geometry,
-  // accelerator and plan must outlive this object.
+  // `drawn`: lobes from which the caller samples rays that may hit the same light: Lobes::all or
+  // Lobes::non_diffuse. With Lobes::non_diffuse, light on diffuse lobes is weighted against DiffuseRays if
+  // wants_diffuse_rays(). Geometry, accelerator and plan must outlive this object.
   SampledLight(const Geometry<T>& geometry, const Accelerator<T>& accelerator, const Plan& plan, Lobes drawn);
 
-  // Returns whether diffuse lobes need DiffuseRays: they are not in `drawn`, and light sampling misses some
-  // light.
+  // Returns true if the caller must trace DiffuseRays: `drawn` excludes diffuse lobes, and light sampling
+  // misses some light.
   bool wants_diffuse_rays() const { return wants_diffuse_rays_; }
 
   // Adds the light of one sampled source per surface point to its radiance. `groups` are the registers with a
@@ -42,7 +42,7 @@ class SampledLight {
   // Lights of one kernel: a set, the emitters, or the environment.
   struct Source {
     const LightKernel<T>* kernel;
-    std::vector<IndexOf<T>> index;  // index in the kernel, by light number; -1: not its light
+    std::vector<IndexOf<T>> index;  // index in the kernel, by light number; -1: light of another kernel
   };
   void add_sources();
   void choose(const PathDraws<T>& draws, const SurfaceBatch<T>& surface, const LaneGroups& groups);
@@ -54,9 +54,9 @@ class SampledLight {
   // Light numbers: scene lights, then emitters, then the environment if it is sampled.
   const LightTree<T>* tree_;  // all lights except the environment; null if there are none
   std::size_t count_, first_emitter_;
-  bool environment_;  // is sampled: with probability 1/2, or 1 without other lights
-  T share_;           // probability of the environment; also that of the tree
-  bool apart_;        // diffuse lobes are not in `drawn`
+  bool environment_;  // true if sampled: with probability 1/2, or 1 without other lights
+  T share_;           // probability of sampling the environment, and of sampling the tree
+  bool apart_;        // `drawn` excludes diffuse lobes
   bool wants_diffuse_rays_;
   EnvironmentLighting<T> environment_lighting_;
   Array<IndexOf<T>> chosen_;  // light numbers

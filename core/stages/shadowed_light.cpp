@@ -14,7 +14,7 @@ void ShadowedLight<T>::evaluate_diffuse(const Directions<T>& directions, const S
   }
 }
 
-// Shadow rays start on the side of the surface that the direction to the light selects.
+// Shadow rays start on the side of the surface that faces the light.
 template <class T>
 LaneGroups ShadowedLight<T>::find(const PathBatch<T>& paths, const SurfaceBatch<T>& surface,
                                   const LaneGroups& groups, bool constant_half, TraceCounts& counts) {

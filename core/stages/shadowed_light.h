@@ -7,7 +7,7 @@
 
 namespace orrery {
 
-// Reflected light of light sources. The caller fills `light`; find() evaluates the materials and traces
+// Reflected light of light sources. The caller fills `light`. find() then evaluates the materials and traces
 // shadow rays. Not thread-safe: each object owns its batches. Objects on several threads may share the
 // geometry, accelerator and plan.
 template <class T>
@@ -20,7 +20,7 @@ class ShadowedLight {
 
   // Evaluates the materials of `groups` and traces shadow rays for lanes that reflect light. Returns the
   // registers with such lanes. Afterwards light.shadow.t_max is positive in lanes whose light is reflected
-  // and not occluded. constant_half: see Directions.
+  // and not occluded. Without Plan::shadows, no light counts as occluded. constant_half: see Directions.
   LaneGroups find(const PathBatch<T>& paths, const SurfaceBatch<T>& surface, const LaneGroups& groups,
                   bool constant_half, TraceCounts& counts);
 
@@ -28,7 +28,7 @@ class ShadowedLight {
   // Results of MaterialKernel::evaluate(). Undefined outside the registers that find() returned.
   Vec3Array<T> pi_bsdf_cos;
   Array<T> pdf;
-  // Results for diffuse lobes if `apart`; pi_bsdf_cos and pdf are then those of all other lobes.
+  // Results for diffuse lobes if `apart`. pi_bsdf_cos and pdf are then the results for the other lobes.
   Vec3Array<T> diffuse;
   Array<T> diffuse_pdf;
 
@@ -42,8 +42,8 @@ class ShadowedLight {
   bool apart_;
 };
 
-// Sets pi_bsdf_cos and pdf of the lanes of `groups` for these lobes of their materials. If a material is not
-// lit or lacks the lobes, pdf is 0 and pi_bsdf_cos is unchanged.
+// Sets pi_bsdf_cos and pdf of the lanes of `groups` for these lobes of their materials. In lanes whose
+// material is not lit or lacks the lobes, pdf is 0 and pi_bsdf_cos is unchanged.
 template <class T>
 void evaluate_materials(const Geometry<T>& geometry, const Directions<T>& directions,
                         const SurfaceBatch<T>& surface, const LaneGroups& groups, Lobes lobes,

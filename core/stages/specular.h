@@ -5,8 +5,8 @@
 
 namespace orrery {
 
-// Evaluates the specular materials of the registers of `groups`. If `filters`, multiplies throughput by the
-// transmittance of the body that the ray has crossed.
+// Evaluates the specular materials of the registers of `groups`. If `filters`, multiplies the throughput of
+// rays that hit these materials by SpecularBatch::filter.
 template <class T>
 void evaluate_specular(const Geometry<T>& geometry, bool filters, const HitBatch<T>& hits,
                        const SurfaceBatch<T>& surface, const LaneGroups& groups, PathBatch<T>& paths,

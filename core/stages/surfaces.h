@@ -3,9 +3,12 @@
 #include "core/model/path.h"
 #include "core/model/world.h"
 
+// core/stages contains the stages of techniques. A stage processes whole batches of rays. Functions are
+// thread-safe. Objects that own batches are not thread-safe, so each thread needs separate objects. Stages
+// throw nothing except std::bad_alloc. Building a LightTree also throws Cancelled.
 namespace orrery {
 
-// Sets the hits of `groups` to kNoPrimitive at t_max.
+// Resets the hits of `groups`: t to t_max, and the primitive to kNoPrimitive.
 template <class T>
 void reset(const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits) {
   for (const int i : groups) {
@@ -14,8 +17,8 @@ void reset(const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits)
   }
 }
 
-// Sets the materials of register i, or -1 for rays that missed. Fast if all rays hit the same primitive, as
-// neighbours mostly do.
+// Sets the materials of register i, or -1 for rays that missed. Fast if all rays hit the same primitive,
+// which is the most frequent case.
 template <class T>
 void find_materials(const Geometry<T>& geometry, const HitBatch<T>& hits, int i, SurfaceBatch<T>& surface) {
   const auto material = [&](IndexOf<T> p) {

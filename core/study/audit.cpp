@@ -15,10 +15,12 @@
 namespace orrery {
 namespace {
 
-constexpr int kSamplesOfMiddle = 64;  // instead of a single centred sample
-constexpr double kMinWeight = 1e-4;   // maximum min_contribution of full ray trees
+// Samples per pixel of the render without cuts, if the request has one sample at the pixel centre.
+constexpr int kSamplesOfMiddle = 64;
+// Maximum min_contribution of the render without cuts, for techniques that trace ray trees.
+constexpr double kMinWeight = 1e-4;
 
-// Returns the numbers of `count` random pixels. Pixels are numbered row by row.
+// Returns the numbers of `count` random pixels, drawn with replacement. Pixels are numbered row by row.
 std::vector<std::int64_t> draw_pixels(const Plan& plan, int count, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const double all = double(plan.width) * plan.height;
@@ -54,7 +56,7 @@ RenderRequest without_cuts(const Plan& plan) {
   return whole;
 }
 
-// Renders these pixels. The other pixels of the film are not set.
+// Renders `pixels` and adds the cost to `stats`. Returns a film whose other pixels are not set.
 Film render_pixels(const PreparedScene& scene, const Plan& plan, const std::vector<std::int64_t>& pixels,
                    RenderStats& stats, WorkerPool& pool, const RenderControl& control) {
   const SettledPlan settled = settle(scene, plan, control.stop);

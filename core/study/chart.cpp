@@ -18,7 +18,8 @@ std::vector<double> values_of(const Point& point, const Value& value) {
 double rmse_of(const Measurement& s) { return s.difference.rmse; }
 double cpu_ms_of(const Measurement& s) { return s.cpu_ms; }
 
-// Returns the confidence interval of the mean of non-negative values, clipped at 0.
+// Returns the 95 % confidence interval of the mean of non-negative values, clipped at 0, or nullopt for fewer
+// than two values.
 std::optional<Interval> interval_of(const std::vector<double>& values) {
   auto interval = mean_interval(values);
   if (interval) interval->low = std::max(0.0, interval->low);
@@ -83,8 +84,8 @@ double Chart::full_seconds(double cpu_ms) const {
 
 namespace {
 
-// Returns the confidence interval of the mean of difference(a, b) over the common rounds of both points. With
-// one common round, both ends are its difference.
+// Returns the 95 % confidence interval of the mean of difference(a, b) over the common rounds of both points.
+// With one common round, both ends are the difference of this round. REQUIRES: both points have a round.
 template <class Difference>
 Interval compared(const Point& a, const Point& b, const Difference& difference) {
   std::vector<double> values;
@@ -98,7 +99,8 @@ Interval extra_ms(const Point& point, const Point& other) {
                   [](const Measurement& a, const Measurement& b) { return a.cpu_ms - b.cpu_ms; });
 }
 
-// Compares errors. The result is below 0 if the error of `point` is more than 1 % smaller.
+// Returns the interval of the error of `point` minus 0.99 times the error of `other`. It is below 0 if the
+// error of `point` is more than 1 % smaller.
 Interval extra_rmse(const Point& point, const Point& other, double floor) {
   constexpr double kNearer = 0.99;
   return compared(point, other, [&](const Measurement& a, const Measurement& b) {
@@ -110,8 +112,8 @@ bool is_dominated(const Point& point, const Point& other, double floor) {
   return extra_ms(point, other).low > 0 && extra_rmse(point, other, floor).low >= 0;
 }
 
-// Returns whether `point` is slower and less accurate than `other`, with intervals that do not overlap. Also
-// works for points with too few common rounds.
+// Returns whether `point` is slower and less accurate than `other`, with intervals that do not overlap. Uses
+// all rounds of both points, not only the common ones.
 bool is_apart(const Point& point, const Point& other) {
   const auto beyond = [](const std::optional<Interval>& worse, const std::optional<Interval>& better) {
     return worse && better && worse->low > better->high;

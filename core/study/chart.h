@@ -21,9 +21,9 @@ struct Configuration {
 // Cost and error of one image.
 struct Measurement {
   Difference difference;  // from the reference
-  double ssim = 1;        // with the reference; see ssim()
+  double ssim = 1;        // structural similarity to the reference; see ssim()
   double cpu_ms = 0;      // time to trace, summed over all threads
-  double rays = 0;        // rays traced
+  double rays = 0;        // number of rays traced
 };
 
 // Pareto status of a point. front: more accurate or faster than every other point. undecided: the rounds
@@ -46,7 +46,8 @@ struct Point {
   double psnr_db() const;  // 10 log10(1 / MSE of all rounds), values clamped to [0, 1]; may be infinite
   double cpu_ms() const;   // mean over rounds
   double rays() const;     // mean over rounds
-  // Return the confidence interval of the mean over the rounds, or nullopt if there is only one round.
+  // Return the 95 % confidence interval of the mean over the rounds, clipped at 0, or nullopt for fewer than
+  // two rounds.
   std::optional<Interval> rmse_interval() const;
   std::optional<Interval> cpu_ms_interval() const;
   // Returns an upper bound of the error: the upper end of rmse_interval(), or the RMSE of a single round.
@@ -74,11 +75,11 @@ struct Chart {
   std::string scene_id, title;
   PictureSize size;      // requested image
   PictureSize measured;  // rendered images
-  int rounds = 0;        // maximum per point; dominated points have fewer
+  int rounds = 0;        // maximum number of rounds of a point; dominated points have fewer
   int threads = 1;       // assumed by full_seconds()
   Configuration reference;
-  std::string reference_plan, reference_picture_plan;  // for the first of its two images; see Point
-  double reference_cpu_ms = 0;                         // one of the two images
+  std::string reference_plan, reference_picture_plan;  // first image of the reference; see Point
+  double reference_cpu_ms = 0;                         // CPU time to trace the second image of the reference
   // Estimated RMSE of the reference, which is the mean of two images with different seeds: half of the RMSE
   // between the two. Errors below it are meaningless.
   double reference_rmse = 0;
@@ -99,11 +100,11 @@ void mark_pareto_front(std::vector<Point>& points, double floor);
 
 // Cheapest point with an error below a limit.
 struct Recommendation {
-  double error;       // RMSE, linear colour
+  double error;       // limit of the RMSE, in linear colour
   std::size_t point;  // index; its max_rmse() is below `error`
 };
-// Returns recommendations for the errors 0.1, 0.05, 0.02, 0.01, ..., down to the smallest that the front
-// reaches. Among errors with the same point, only the smallest is listed.
+// Returns recommendations for the limits 0.1, 0.05, 0.02, 0.01, ..., 0.0001, down to the smallest limit that
+// the front reaches. Among limits with the same point, only the smallest is listed.
 std::vector<Recommendation> recommendations(const Chart& chart);
 
 // Returns the name of the chart line that a configuration belongs to: "whitted 5, double".

@@ -26,7 +26,7 @@ Plane luma_of(std::span<const float> linear) {
 constexpr int kReach = 5;  // pixels on each side of the centre
 constexpr double kDeviation = 1.5;
 
-// Returns the weights of neighbours by distance in pixels.
+// Returns the Gaussian weights of neighbours, by distance in pixels.
 std::array<double, kReach + 1> weights_by_distance() {
   std::array<double, kReach + 1> weights;
   for (int i = 0; i <= kReach; ++i)

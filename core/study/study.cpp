@@ -16,10 +16,10 @@
 namespace orrery {
 namespace {
 
-constexpr int kMoreSamples = 4;  // factor on the samples of the highest configuration
-constexpr int kFirstRounds = 2;  // for every point; an interval needs two
-constexpr double kClockStep_ms = 1e-6;
-constexpr int kStep = 4;  // factor between the samples of configurations
+constexpr int kMoreSamples = 4;         // samples of the reference / samples of the highest configuration
+constexpr int kFirstRounds = 2;         // rounds of every point; a confidence interval needs two
+constexpr double kClockStep_ms = 1e-6;  // minimum CPU time of an image, so that ratios are finite
+constexpr int kStep = 4;                // factor between the samples of configurations
 static_assert(kMaxChartSamples * kMoreSamples <= kMaxSamples);
 
 void require_chartable(const RenderRequest& view, const PictureSize& measured) {
@@ -37,8 +37,8 @@ void require_chartable(const RenderRequest& view, const PictureSize& measured) {
   if (!problems.empty()) throw InputError(std::move(problems));
 }
 
-// Returns the models up to that of the plan, simplest first: techniques at their default depths, then the
-// technique of the plan with increasing depth.
+// Returns the models up to the model of the plan, simplest first: simpler techniques at their default depths,
+// but at most the depth of the plan, then the technique of the plan with increasing depth.
 std::vector<Configuration> models_up_to(const Plan& plan) {
   const Configuration whole{.technique = plan.technique->name, .max_depth = plan.max_depth};
   std::vector<Configuration> models;
@@ -62,8 +62,8 @@ bool same_work(const Point& a, const Point& b) {
   return configuration(a) == configuration(b) && a.rays() == b.rays() && a.rmse() == b.rmse();
 }
 
-// Returns for each point whether it has the same rays and error as a simpler model, because the scene has no
-// deeper rays.
+// Returns, for each point, whether the point has the same rays and error as a simpler model. This happens if
+// the scene has no deeper rays.
 std::vector<bool> find_same(const std::vector<Point>& points) {
   std::vector<bool> same(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
@@ -182,7 +182,7 @@ void Study::add(const RenderResult& rendered) {
   if (taken + 1 == turns_.size() || turns_[taken + 1].round != turn.round) end_round(turn.round);
 }
 
-// Removes pending turns that would add no information.
+// Removes pending images of points that are dominated or the same as a simpler model.
 void Study::end_round(int round) {
   if (round == 0) same_ = find_same(chart_.points);
   std::vector<Point> different;

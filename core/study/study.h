@@ -15,20 +15,20 @@ inline constexpr std::int64_t kMaxChartPixels = std::int64_t{1} << 20;
 // Charts speed against accuracy for one view of a scene. The configurations vary technique, ray depth,
 // precision and samples, up to those of the view. The reference has the technique of the view, double
 // precision and four times the samples of the highest configuration. Effects that this technique does not
-// model are not counted as errors. Each round renders all configurations with its own seed. The reference is
-// the mean of two images with further seeds. After the first round, configurations with the same rays and
-// error as a simpler one are dropped. After the second round, dominated configurations are not rendered any
-// more. Not thread-safe.
+// model are not counted as errors. The reference is the mean of two images with different seeds. Each round
+// renders all configurations with another seed. After the first round, a configuration with the same rays and
+// the same error as a simpler configuration is dropped. From the third round on, dominated configurations are
+// not rendered. Not thread-safe. Throws InputError only from the constructor.
 class Study {
  public:
   struct Extent {
     int samples = 64;  // per pixel, upper limit of 1, 4, 16, ...
     int rounds = 3;    // maximum images per configuration
-    int width = 0;     // rendered images, in pixels; 0 or more than requested: as requested
+    int width = 0;     // maximum width of the rendered images, in pixels; 0: the requested width
     int threads = 1;   // assumed by Chart::full_seconds()
   };
   // Charts the image of `view`. Throws InputError for more than kMaxChartPixels, and if `view` sets samples,
-  // precision, layers, a budget or a view other than `picture`. The scene must live until complete().
+  // precision, layers, a budget or a view other than `picture`. `scene` must outlive the last call of add().
   // REQUIRES: samples in [1, kMaxChartSamples], rounds in [1, kMaxChartRounds].
   Study(const Scene& scene, const RenderRequest& view, const Extent& extent);
 
@@ -38,7 +38,7 @@ class Study {
   // Returns the request of an image, to be rendered as FilmStorage::linear32. REQUIRES: 0 <= number <
   // pictures().
   RenderRequest request(int number) const;
-  // Adds the next image, in the order of the numbers.
+  // Adds the next image. Images are added in the order of their numbers.
   void add(const RenderResult& rendered);
   bool complete() const { return added_ == pictures(); }
   // Frees memory that only add() needs. add() must not be called afterwards.
@@ -74,7 +74,7 @@ class Study {
   int added_ = 0;
   std::vector<float> reference_;  // empty once complete
   std::vector<Turn> turns_;       // one per image of a point, rendered or pending
-  std::vector<bool> same_;        // by point: same rays and error as a simpler model
+  std::vector<bool> same_;        // by point: has the same rays and error as a simpler model
   Chart chart_;
 };
 

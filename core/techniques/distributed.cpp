@@ -14,7 +14,8 @@ class Distributed final : public PathTracer<T> {
 
 }  // namespace
 
-// The default depth is that of `whitted` plus 1, because the ray to a light source counts along a path.
+// The default depth is the default of `whitted` plus 1, because along a path, the ray to a light source
+// counts as one more level.
 TechniqueType distributed_type() {
   return {
       .name = "distributed",

@@ -160,8 +160,8 @@ MaskOf<Lanes<T>> PathTracer<T>::view_independent_lanes(int i) const {
 template <class T>
 void PathTracer<T>::scatter(const LaneGroups& met) {
   const auto& v = *this->vertices_;
-  if (!with_diffuse(followed_))
-    for (const int i : met) scatter_.weight.put(i, Vec3<N>(N(T(0))));  // for materials without followed lobes
+  if (!with_diffuse(followed_))  // some materials may have no followed lobe
+    for (const int i : met) scatter_.weight.put(i, Vec3<N>(N(T(0))));
   for (const auto& m : this->geometry_.materials)
     if (m.traits.has(followed_))
       m.kernel->sample(v.paths->rays, v.hits, v.surface, this->draws(), met, followed_, scatter_);

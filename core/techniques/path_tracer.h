@@ -9,14 +9,15 @@
 namespace orrery {
 
 // Base of techniques that follow one path per sample. Each vertex samples one light source, for all lobes,
-// and one direction of the followed lobes. Emission is added up to Plan::max_depth, sampled light up to one
-// depth less. From the second vertex on, the survival probability of a path is the square root of its
-// throughput, at least 0.05 (Russian roulette). If diffuse lobes are not followed, reflected ambient light
-// replaces interreflection. DiffuseRays then adds the emitted light that light sampling misses.
+// and one direction of the followed lobes. Emission is added up to depth Plan::max_depth, sampled light up to
+// depth Plan::max_depth - 1. From the second vertex on, the survival probability of a path is the square root
+// of the largest throughput component, clamped to [0.05, 1] (Russian roulette). If diffuse lobes are not
+// followed, reflected ambient light replaces interreflection. DiffuseRays then adds the emitted light that
+// light sampling misses.
 template <class T>
 class PathTracer : public Wavefront<T> {
  public:
-  // `followed` is all lobes, or all except the diffuse ones.
+  // `followed` is Lobes::all or Lobes::non_diffuse.
   PathTracer(const World<T>& world, const Plan& plan, Lobes followed);
 
   bool has_emission_pass() const final { return has_emission_pass_; }
@@ -37,24 +38,24 @@ class PathTracer : public Wavefront<T> {
   // Adds ambient light in place of the light that specular surfaces would mirror and refract.
   void add_ambient_of_mirrors(const LaneGroups& met);
   void add_emitted_radiance(const LaneGroups& groups, const LaneGroups& met);
-  // Adds emission_ of second vertices to the sums of the camera rays. First vertices sample this light too,
-  // so it is direct light, which is neither shared nor clamped.
+  // Adds emission_ of second vertices to the sums of the camera rays. First vertices sample this light too.
+  // It is therefore direct light, which is neither shared nor clamped.
   void add_emission_to_first(const LaneGroups& groups);
   // Adds indirect light, clamped to Plan::clamp_indirect, and records the excess as clamped().
   void add_clamped();
   // Samples directions and spawns the rays along them.
   void scatter(const LaneGroups& met);
   void continue_path(int i);
-  // Ends the paths at the depth limit. Light of longer paths is left out or replaced by ambient light, and
-  // its upper bound is recorded as omitted.
+  // Ends the paths at the depth limit. Light of longer paths is left out or replaced by ambient light, and an
+  // upper bound on the omitted light is recorded.
   void end(const LaneGroups& met);
 
   MaskOf<N> surface_lanes(int i) const {
     const auto primitive = load_index<T>(this->vertices_->hits.primitive, i);
     return mask_cast<N>(primitive != IndexLanes<T>(IndexOf<T>{kNoPrimitive}));
   }
-  // Returns the weights of the directions sampled at the first vertices, for the paths in register i. With
-  // path reuse, their throughput excludes these weights.
+  // Returns the weights of the directions sampled at the first vertices, for the paths in register i. The
+  // throughput of these paths excludes the weights. REQUIRES: path reuse.
   Vec3<N> first_weights(int i) const;
   // Returns the lanes whose reflected light does not depend on the view.
   MaskOf<N> view_independent_lanes(int i) const;
@@ -62,7 +63,7 @@ class PathTracer : public Wavefront<T> {
   const Lobes followed_;
   SampledLight<T> sampled_light_;
   const bool has_emission_pass_;
-  std::unique_ptr<DiffuseRays<T>> diffuse_rays_;  // null if not needed
+  std::unique_ptr<DiffuseRays<T>> diffuse_rays_;  // null unless SampledLight::wants_diffuse_rays()
   std::unique_ptr<PathReuse<T>> reuse_;           // null without path reuse
   std::unique_ptr<Vec3Array<T>> indirect_;        // by camera ray; null without clamping
   ScatterBatch<T> scatter_;

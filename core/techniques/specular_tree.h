@@ -18,12 +18,13 @@ class SpecularTree : public Wavefront<T> {
   SpecularTree(const World<T>& world, const Plan& plan);
 
  protected:
-  // Continues at specular surfaces: calls follow() or cut() for the specular lanes of each register of
+  // Continues paths at specular surfaces: calls follow() or cut() for the specular lanes of each register of
   // `groups`. REQUIRES: each of these registers has a specular surface.
   virtual void scatter(const LaneGroups& groups) = 0;
 
   // Spawns rays from the surfaces in the lanes `mask` of register i along `direction`, with `weight` per
-  // channel. Cuts rays beyond Plan::max_depth or with a throughput below Plan::min_contribution.
+  // channel. Cuts rays beyond Plan::max_depth, and rays whose throughput is below Plan::min_contribution in
+  // every channel.
   void follow(Kind kind, int i, const MaskOf<N>& mask, const Vec3<N>& direction, const Vec3<N>& weight);
   // Adds ambient light in place of untraced rays, and records the rays as omitted.
   void cut(int i, const MaskOf<N>& mask, const Vec3<N>& weight);

@@ -21,7 +21,8 @@ bool Wavefront<T>::trace(const RayBatch<T>& camera_rays, const Draws& draws, Tra
   checkpoint_ = &checkpoint;
   start(camera_rays);
   begin();
-  while (!waiting_.empty()) {  // nested glass can spawn a tree of billions of rays
+  // Polls the checkpoint after each batch, because nested glass can spawn a tree of billions of rays.
+  while (!waiting_.empty()) {
     auto batch = std::move(waiting_.back());
     waiting_.pop_back();
     run(*batch);

@@ -9,7 +9,7 @@
 //   closest hit -> surface -> shading (by the technique) -> deposit
 // and the rays spawned by shading form the next batches. There is no recursion: batches wait on a stack, at
 // most two per depth, so memory is bounded for every scene. The rays of a batch, and therefore the order of
-// sums, depend only on the scene, not on lane width, slice or thread.
+// sums, depend only on the scene and the plan, not on SIMD width, Plan::slice or threads.
 namespace orrery {
 
 template <class T>
@@ -43,14 +43,15 @@ class Wavefront : public Tracer<T> {
   virtual Vec3Array<T>& sums(int /*depth*/) { return out_->radiance; }
 
   enum class Kind { reflected, refracted };
-  // Spawns rays from the surfaces in the lanes `mask` of register i along `direction`. `throughput` is the
-  // fraction of their radiance that reaches the camera ray. Returns the mask as bits.
+  // Spawns rays from the surfaces in the lanes `mask` of register i along `direction`. `throughput` is
+  // PathBatch::throughput of the new rays. Returns the mask as bits.
   unsigned spawn(Kind kind, int i, const MaskOf<N>& mask, const Vec3<N>& direction,
                  const Vec3<N>& throughput);
-  // Spawns the only ray from each vertex. `pdf` is the density per solid angle of its direction.
+  // Spawns one ray per vertex. `pdf` is the density per solid angle with which the direction of the ray was
+  // sampled. The rays count as reflected rays.
   void spawn(int i, const MaskOf<N>& mask, const Vec3<N>& direction, const Vec3<N>& throughput, const N& pdf);
-  // Adds `weight` times Plan::cut_range to the omitted light of the camera rays and counts the untraced rays,
-  // for the lanes `mask`.
+  // Records untraced rays with throughput `weight` in the lanes `mask`: adds `weight` times Plan::cut_range
+  // to the omitted light of the camera rays, and counts the rays.
   void record_omitted(int i, const MaskOf<N>& mask, const Vec3<N>& weight);
 
   // Returns the light removed by clamping, by camera ray.
@@ -69,7 +70,7 @@ class Wavefront : public Tracer<T> {
  private:
   void start(const RayBatch<T>& camera_rays);
   void run(PathBatch<T>& paths);
-  // Sets the time of each ray to that of its camera ray.
+  // Sets the time of each ray to the time of its camera ray.
   void inherit_times(PathBatch<T>& paths) const;
   void run_slice(const LaneGroups& groups);
   void record_channels(const LaneGroups& groups, const LaneGroups& met);

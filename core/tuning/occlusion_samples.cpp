@@ -15,7 +15,7 @@ struct ShadowRay {
   T t_max;
 };
 
-// Keeps every n-th ray that is added. n doubles whenever more than kMost are kept.
+// Keeps every n-th added ray. n is initially 1 and doubles whenever more than kMost rays are kept.
 template <class T>
 class DecimatingSampler {
  public:
@@ -58,7 +58,7 @@ class Recorder final : public Accelerator<T> {
   DecimatingSampler<T>& into_;
 };
 
-// Appends one sample per ray: the ray and its first hit. REQUIRES: `some` fits in a batch.
+// Appends one sample per ray: the ray and its nearest hit. REQUIRES: `some` fits in a batch.
 template <class T>
 void find_occluders(const Accelerator<T>& accelerator, std::span<const ShadowRay<T>> some,
                     std::vector<OcclusionSample>& samples) {
@@ -70,7 +70,7 @@ void find_occluders(const Accelerator<T>& accelerator, std::span<const ShadowRay
     const ShadowRay<T>& ray = some[static_cast<std::size_t>(real ? i : 0)];
     rays->set(i, ray.ray, real ? ray.t_max : T(-1));
   }
-  rays->time.values.fill(T(0.5));  // as in try_tiles()
+  rays->time.values.fill(T(0.5));  // try_tiles() uses the same time
   hits->t = rays->t_max;
   hits->primitive.values.fill(kNoPrimitive);
   AcceleratorCounts counts;

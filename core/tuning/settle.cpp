@@ -10,8 +10,8 @@
 namespace orrery {
 namespace {
 
-constexpr int kTiles = 3, kDeepest = 3;                 // tiles and maximum ray depth of a trial
-constexpr int kListMayPay = 64, kBoxesMayPay = 10'000;  // maximum primitives for a trial
+constexpr int kTiles = 3, kDeepest = 3;                 // number of tiles and maximum ray depth of a trial
+constexpr int kListMayPay = 64, kBoxesMayPay = 10'000;  // primitive counts up to which each is tried
 constexpr double kGain = 0.85;  // maximum cost of a replacement, relative to the planned accelerator
 
 struct TrialResult {

@@ -12,7 +12,7 @@ namespace orrery::test {
 namespace {
 
 // Returns groups of 16 coherent rays, such as camera rays of neighbouring pixels or shadow rays to one light.
-// A group shares either its origin or its target, chosen at random.
+// The rays of a group have either a common origin or a common target, chosen at random.
 template <class T>
 Rays<T> alike_rays(const Vec3d& middle, double half, int count, double spread, std::uint64_t seed) {
   Random random(seed);
@@ -38,7 +38,8 @@ Rays<T> any_rays(const Vec3d& middle, double half, int count, std::uint64_t seed
   return rays;
 }
 
-// Returns groups of 16 rays, each from one point to random targets.
+// Returns `count` rays in groups of 16. The rays of a group have a common origin, `from` metres away from a
+// random target, and point towards random targets.
 template <class T>
 Rays<T> aimed_rays(const std::vector<Vec3d>& targets, double from, int count) {
   Random random(2);
@@ -60,7 +61,7 @@ class AdversarialScenes : public StructureTest {
   AcceleratorFacts agree(const Json& scene, const Rays<T>& rays) {
     return StructureTest::agree<T>(scene, rays, {T(0.7), std::numeric_limits<T>::infinity()});
   }
-  // Compares with the list for `count` rays of each kind in a cube of half width `half`.
+  // Compares the structure with the list, for `count` rays of each kind in a cube of half width `half`.
   AcceleratorFacts agree(const Json& scene, const Vec3d& middle, double half, int count) {
     const auto facts = agree<float>(scene, any_rays<float>(middle, half, count, 1));
     agree<double>(scene, any_rays<double>(middle, half, count, 1));
@@ -94,7 +95,7 @@ Json sheet(int side, const Height& height) {
   return {{"type", "mesh"}, {"positions", positions}, {"indices", indices}};
 }
 
-TEST_P(AdversarialScenes, MatchesListOnTriangleWaves) {
+TEST_P(AdversarialScenes, MatchesListOnWavySheet) {
   covers("F1");
   agree(scene_with({sheet(12, [](double x, double y) { return 0.3 * std::sin(5 * x) * std::cos(4 * y); })}),
         {}, 1.2, 20'000);
@@ -132,7 +133,7 @@ TEST_P(AdversarialScenes, BoundsDepthOnConcentricSpheres) {
   EXPECT_LE(agree(scene_with(objects), {}, 1.2, 2'000).depth, 2 * std::log2(1000) + 32);
 }
 
-TEST_P(AdversarialScenes, MatchesListOnHalvingSpheres) {
+TEST_P(AdversarialScenes, MatchesListOnSpheresOfHalvingSize) {
   covers("F3");
   Json objects = Json::array();
   for (int i = -19; i < 37; ++i)
@@ -170,7 +171,7 @@ TEST_P(AdversarialScenes, MatchesListOnSampleScenes) {
     if (entry.path().extension() != ".json") continue;
     SCOPED_TRACE(entry.path());
     const Json scene = Json::parse(std::ifstream(entry.path()));
-    const bool many = load(scene)->primitive_count() > 500;  // the list is slow
+    const bool many = load(scene)->primitive_count() > 500;  // too slow for the list
     const int rays = !kSanitized ? 100'000 : many ? 100 : 10'000;
     agree<float>(scene, any_rays<float>({0, 1, 0}, 4, rays, 7));
     agree(scene, {0, 1, 0}, 4, !many ? 5'000 : kSanitized ? 100 : 1'000);

@@ -22,7 +22,7 @@ Json cloud(int count, std::uint64_t seed, bool bounded_only = false) {
   return scene_with(objects);
 }
 
-// Returns coplanar, touching and coincident shapes, with ties and near ties.
+// Returns coplanar, touching and coincident shapes. Their hits are equally or nearly equally distant.
 Json stack() {
   Json objects = Json::array();
   for (int i = 0; i < 6; ++i) {
@@ -53,8 +53,8 @@ Rays<T> rays_through(double half, double from, int count, std::uint64_t seed) {
 }
 
 // Returns rays that start `distance` away and pass within 8 ulp of `distance` of the surface, where rounding
-// decides. Most rays are tangential. Every fourth has a random direction, because tangential rays miss flat
-// shapes.
+// decides. Most rays are tangential. Every fourth ray has a random direction, because tangential rays miss
+// flat shapes.
 template <class T>
 Rays<T> touching_rays(const Json& object, double distance, int count) {
   const Target<double> shape(scene_with(object));

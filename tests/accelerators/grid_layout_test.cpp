@@ -21,7 +21,7 @@ Cells visited(const GridLayout<T>& layout, const Ray<T>& ray) {
   return cells;
 }
 
-// Returns the cells that the ray touches, where each closed cell is enlarged by `pad` on all sides. Computed
+// Returns the cells that the ray touches if every cell is closed and enlarged by `pad` on all sides. Computes
 // in long double.
 template <class T>
 Cells touched(const GridLayout<T>& layout, const Ray<T>& ray, long double pad) {
@@ -87,7 +87,7 @@ TYPED_TEST(GridLayouts, VisitsBothSidesOfPlaneContainingRay) {
         expect_visits<T>(layout, {{x, y, T(-3)}, {zero, zero, T(1)}});
         expect_visits<T>(layout, {{x, y, T(11)}, {zero, zero, T(-1)}});
         expect_visits<T>(layout, {{x, T(-3), y}, {zero, T(1), zero}});
-        // In a plane between cells, crossing other planes.
+        // A ray in a plane between cells that crosses planes of other axes.
         expect_visits<T>(layout, {{x, y, T(-3)}, {T(0.6), zero, T(0.8)}});
       }
     }
@@ -98,7 +98,7 @@ TYPED_TEST(GridLayouts, VisitsBothSidesOfPlaneContainingRay) {
   expect_visits<T>(layout, {{T(9), T(4), T(-3)}, {T(0), T(0), T(1)}});  // misses the grid
 }
 
-TYPED_TEST(GridLayouts, VisitsKnownPaths) {
+TYPED_TEST(GridLayouts, VisitsCellsOfAxisParallelAndEdgeCrossingRays) {
   covers("F12");
   using T = TypeParam;
   const GridLayout<T> unit({Vec3<T>(T(0)), Vec3<T>(T(1))}, 1000);
@@ -109,7 +109,7 @@ TYPED_TEST(GridLayouts, VisitsKnownPaths) {
   expect_visits<T>(wide, {{T(0), T(0), T(0)}, Vec3<T>(safe_normalize(Vec3d(90, -16, 45)))});
 }
 
-TYPED_TEST(GridLayouts, CreatesCellsForFlatBoxes) {
+TYPED_TEST(GridLayouts, VisitsCellsOfBoxesWithZeroExtent) {
   covers("F13");
   using T = TypeParam;
   for (const Vec3<T>& size : {Vec3<T>(1, 1, 0), Vec3<T>(0, 1, 0), Vec3<T>(0, 0, 0)}) {

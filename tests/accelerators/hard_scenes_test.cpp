@@ -27,7 +27,7 @@ TEST_P(HardScenes, RendersIdenticallyToList) {
   for (const std::string& path : hard_scenes()) {
     std::ifstream file(path);
     const auto scene = load(Json::parse(file));
-    // In float, the list is no valid reference.
+    // In float, such small scenes underflow, and the list is no valid reference.
     const bool underflows = scene->facts.smallest_feature.value < 1e-10;
     for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
       if (underflows && precision == Precision::single_precision) continue;
@@ -48,7 +48,8 @@ INSTANTIATE_TEST_SUITE_P(Structures, HardScenes, testing::ValuesIn(accelerator_n
                            return name;
                          });
 
-// Returns triangles of the given aspect ratio near the origin, seen with a field of view of a few widths.
+// Returns a scene of narrow triangles near the origin with the given aspect ratio. The image is a few
+// triangle widths high.
 Json slivers(double aspect, Random& random) {
   constexpr int kCount = 60;
   const double width = 2 / aspect;

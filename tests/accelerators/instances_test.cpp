@@ -9,11 +9,11 @@
 #include "tests/support/random.h"
 #include "tests/support/shapes.h"
 
-// Tests instanced models.
+// Tests that instances of models return the same hits as the list and as baked meshes.
 namespace orrery::test {
 namespace {
 
-// Returns a closed ball of triangles around the origin, radius 1.
+// Returns a closed triangle mesh that approximates the unit sphere.
 Json ball_mesh(int rows, int columns) {
   Json positions = Json::array(), indices = Json::array();
   for (int row = 0; row <= rows; ++row)
@@ -53,7 +53,7 @@ const std::vector<Place> kPlaces{{{1, 1, 1}, {0, 1, 0}, {0, 0, 0}, 0},
                                  {{0.01, 0.02, 0.01}, {0, 0, 1}, {1.5, 0, 0}, 33},
                                  {{2, 2, 0.004}, {1, 1, 0}, {0, -4, 0}, 30}};
 
-// A scene needs at least one object. This one is far from the instances.
+// A scene needs at least one object. This sphere is far from the instances.
 const Json kSpeck = {{"type", "sphere"}, {"center", {0, -500, 0}}, {"radius", 0.001}};
 
 Json scene_of_places(const Json& model, const Json& objects = kSpeck) {
@@ -63,7 +63,7 @@ Json scene_of_places(const Json& model, const Json& objects = kSpeck) {
   return scene;
 }
 
-// Returns the same scene with every instance baked into a mesh of its own.
+// Returns scene_of_places(model) with every instance baked into a separate mesh.
 Json baked_scene(const Json& model) {
   Json objects = Json::array({kSpeck});
   for (const Place& place : kPlaces) {
@@ -79,7 +79,7 @@ template <class T>
 Rays<T> rays_around(int count, std::uint64_t seed) {
   Random random(seed);
   Rays<T> rays;
-  while (static_cast<int>(rays.size()) < count) {  // half of the groups are coherent
+  while (static_cast<int>(rays.size()) < count) {  // half of the origins have several, coherent rays
     const Vec3d from = random.in_cube(7), to = random.in_cube(3);
     for (int i = 0; i < (random.below(2) ? 16 : 1); ++i)
       rays.push_back({Vec3<T>(from), Vec3<T>(safe_normalize(to + random.in_cube(0.05) - from))});
@@ -104,7 +104,7 @@ TEST_P(Instances, MatchesList) {
 }
 
 // In model coordinates, these rays start millions of metres away from a ball of radius 1.
-TEST_P(Instances, MatchesListWhenFlattenedToMillionth) {
+TEST_P(Instances, MatchesListWhenScaledToMillionthAlongOneAxis) {
   covers("A27 A38");
   Json scene = scene_of_places(ball_mesh(8, 12));
   for (const char* object :
@@ -161,7 +161,7 @@ TEST(Instance, MatchesBakedMesh) {
   int met = 0, other = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     met += expected[i].met();
-    if (found[i].primitive != expected[i].primitive) {  // at an edge, rounding decides between neighbours
+    if (found[i].primitive != expected[i].primitive) {  // at an edge, rounding decides which triangle is hit
       ++other;
       continue;
     }
@@ -172,7 +172,7 @@ TEST(Instance, MatchesBakedMesh) {
   EXPECT_LE(other, 5);
 }
 
-// Returns the outward normal of a triangle of a placed ball.
+// Returns the outward normal of a triangle of a placed ball, in world coordinates.
 Vec3d world_normal(const Json& model, std::size_t triangle, const Place& place) {
   const Affined world_from_model = place.world_from_model();
   std::array<Vec3d, 3> corner;
@@ -183,8 +183,8 @@ Vec3d world_normal(const Json& model, std::size_t triangle, const Place& place) 
   return dot(normal, corner[0] - place.move) < 0 ? -normal : normal;
 }
 
-// Expects the normal of the surface at exterior hits of every instance. A ray that leaves along this normal
-// must not hit the same instance.
+// Expects the outward normal of the triangle at hits from outside. A ray that leaves along this normal must
+// not hit the same instance.
 template <class T>
 void expect_outward_and_clear() {
   const Json model = ball_mesh(24, 48), json = scene_of_places(model);
@@ -239,7 +239,7 @@ void expect_outward_and_clear() {
   }
 }
 
-TEST(Instance, ReturnsOutwardNormalsAtAnyScale) {
+TEST(Instance, ReturnsOutwardNormalsAndClearOffsetsAtAnyScale) {
   covers("A38 A16");
   expect_outward_and_clear<float>();
   expect_outward_and_clear<double>();

@@ -6,7 +6,7 @@
 #include "tests/support/mixtures.h"
 
 // Tests nearest-hit queries of rays that already have a hit. A structure replaces the hit only by a nearer
-// one, or by an equally near one with a lower primitive number.
+// hit, or by an equally near hit with a lower primitive number.
 namespace orrery::test {
 namespace {
 
@@ -28,8 +28,8 @@ std::vector<Hit<T>> hits_of(const Primitive<T>& primitive, const Rays<T>& rays) 
   return found;
 }
 
-// Initial hits of each ray. `any` is with a random primitive, `last` with the last of the primitives at the
-// nearest distance.
+// Initial hits, one per ray. `any`: the hit with a random primitive, if any. `last`: the hit with the
+// highest-numbered primitive at the nearest distance.
 template <class T>
 struct StartingHits {
   std::vector<Hit<T>> any, last;
@@ -93,7 +93,7 @@ class KnownHits : public testing::TestWithParam<std::string> {
   }
 };
 
-TEST_P(KnownHits, ReplacesHitOnlyByBetterOne) {
+TEST_P(KnownHits, ReplacesHitOnlyByNearerOrLowerNumberedHit) {
   covers("F1");
   agree_on_all<float>();
   agree_on_all<double>();

@@ -77,7 +77,7 @@ struct UpdateCounts {
   double worst = 1;
 };
 
-// For each frame, compares the updated structure and a newly built one with the list at the same time.
+// For each frame, compares the updated structure and a newly built structure with the list at the same time.
 template <class T>
 UpdateCounts follow(const Json& json, const std::string& accelerator, int frames, int rays_a_frame,
                     double half = 7) {
@@ -101,8 +101,8 @@ UpdateCounts follow(const Json& json, const std::string& accelerator, int frames
 
 class Motion : public StructureTest {
  protected:
-  // Expects hierarchies to be refitted at first, and rebuilt when their boxes have grown to half the grid.
-  // All other structures are rebuilt for each frame.
+  // Expects hierarchies to be refitted while their surface area has grown by at most kMaxSurfaceAreaGrowth,
+  // and rebuilt otherwise. All other structures are rebuilt for each frame.
   static void expect_both(const UpdateCounts& followed) {
     const bool hierarchy = GetParam() == "bottom-up" || GetParam() == "bvh";
     EXPECT_EQ(followed.refitted > 1, hierarchy);
@@ -144,7 +144,7 @@ TEST_P(Motion, MatchesListWhenInstanceLeavesAndReturns) {
   follow<float>(scene, GetParam(), 4, 2000);
 }
 
-// A triangle collapses to a line and to a point, and so does a whole mesh.
+// At 0.5 s, three triangles are collapsed to lines. At 1 s, the whole mesh is collapsed to a point.
 TEST_P(Motion, MissesCollapsedTriangles) {
   covers("F19");
   Json scene = swapping_triangles();

@@ -92,8 +92,8 @@ TEST(OrientedBox, FitsRotatedSlab) {
   EXPECT_NEAR(box_of(slab).volume(), 8, 1e-9);
 }
 
-// Clusters of points in two corners rotate axes that are fitted to points, but not axes that are fitted to
-// area.
+// Axes fitted to vertices would turn towards the clusters of vertices in two corners. Axes fitted to area
+// must not.
 TEST(OrientedBox, IgnoresTessellationDensity) {
   covers("F8");
   Hull rectangle{{Vec3d(0, 0, 0), Vec3d(4, 0, 0), Vec3d(4, 1, 0)},

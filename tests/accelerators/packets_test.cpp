@@ -7,7 +7,7 @@
 namespace orrery::test {
 namespace {
 
-// Returns straws in a bundle, each two triangles 2 m long and 1 mm wide.
+// Returns a bundle of `count` straws. A straw is a rectangle of two triangles, 2 m long and 1 mm wide.
 Json straws(int count) {
   Random random(3);
   Json positions = Json::array(), indices = Json::array();
@@ -24,7 +24,7 @@ Json straws(int count) {
   return scene_with(Json{{"type", "mesh"}, {"positions", positions}, {"indices", indices}});
 }
 
-// Returns camera rays in blocks of 16 neighbours.
+// Returns camera rays in blocks of 4 x 4 neighbouring pixels.
 template <class T>
 Rays<T> camera_rays() {
   constexpr int kSide = 64;
@@ -95,9 +95,9 @@ TEST(PacketTraversal, MatchesListBeyondPacketBudget) {
   expect_agreement<double>();
 }
 
-// A packet may test a thousand times as many primitives as one of its rays alone. A packet of shadow rays
-// from the bundle to a light passes many straws, but each ray passes few.
-TEST(PacketTraversal, SwitchesToCheaperSingleRays) {
+// A packet may test a thousand times as many primitives as a single ray. Shadow rays from the bundle to a
+// light are an example: together they pass many straws, but each ray passes few.
+TEST(PacketTraversal, SwitchesToSingleRaysWhenPacketsAreExpensive) {
   const Json scene = straws(4000);
   Structure<float> tree(scene, "bvh");
   const Rays<float> camera = camera_rays<float>();

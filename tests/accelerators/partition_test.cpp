@@ -5,8 +5,8 @@
 #include "tests/support/random.h"
 #include "tests/support/shapes.h"
 
-// Tests the typical failures of space partitions: unbounded duplication of primitives, and cells of one size
-// for scenes of many scales.
+// Tests space partitions for typical failures: unbounded duplication of primitives, and cells of equal size
+// in scenes of many scales.
 namespace orrery::test {
 namespace {
 
@@ -55,7 +55,7 @@ TEST_P(Partitions, LimitsReferencesToDiagonalTriangles) {
   expect_few_references(scene_with(objects), 1);
 }
 
-TEST_P(Partitions, DoesNotSplitCoincidentSpheres) {
+TEST_P(Partitions, LimitsReferencesToCoincidentSpheres) {
   covers("F14 F15");
   Json objects{sphere({5, 5, 5}, 0.1)};
   for (int i = 0; i < 1000; ++i) objects.push_back(sphere({1, 2, 3}, 1e-4));
@@ -135,7 +135,7 @@ double tests_per_ray(const Json& scene, const std::string& name, const Rays<floa
   return static_cast<double>(structure.counts().primitive_tests) / static_cast<double>(rays.size());
 }
 
-TEST(AdaptiveGrid, ResolvesSmallMeshInLargeScene) {
+TEST(AdaptiveGrid, NeedsFewTestsForSmallMeshInLargeScene) {
   covers("F10");
   const Json scene = small_mesh_in_large_ring();
   Random random(9);

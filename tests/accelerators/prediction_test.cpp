@@ -62,7 +62,7 @@ Stage<T> adversary(InvalidPrediction kind) {
   };
 }
 
-// Returns a predictor trained on the hits of the rays that are tested later.
+// Returns a network predictor trained on the nearest hits of `rays`, which are later tested as shadow rays.
 template <class T>
 PredictorPtr<T> trained_on(const Json& scene, const Rays<T>& rays) {
   Structure<T> list(scene, "list");
@@ -95,7 +95,7 @@ std::vector<Front<T>> fronts(const Json& scene, const Rays<T>& rays) {
            scene, Rays<T>(rays.begin(), rays.begin() + std::min<std::ptrdiff_t>(2000, std::ssize(rays)))))}};
 }
 
-// Returns coherent rays from clusters of origins, for which the last occluder is often the next one.
+// Returns coherent rays from clusters of origins, in which consecutive rays often have the same occluder.
 template <class T>
 Rays<T> neighbouring_rays(int count, std::uint64_t seed) {
   Random random(seed);
@@ -171,7 +171,7 @@ TEST(ShadowPrediction, PreservesShadowsOfInvalidRays) {
     EXPECT_EQ(Structure<float>(subject.scene, "bvh", stage).occluded(rays, 2), expected) << front;
 }
 
-TEST(ShadowPrediction, IgnoresNearestHitQueries) {
+TEST(ShadowPrediction, MakesNoPredictionsForNearestHitQueries) {
   const Json scene = balls(50, 1);
   const Rays<float> rays = any_rays<float>(3, 5'000, 5);
   Structure<float> reference(scene, "list");
@@ -183,7 +183,7 @@ TEST(ShadowPrediction, IgnoresNearestHitQueries) {
   }
 }
 
-TEST(PredictionCounts, SeparatesPredictedFromVerifiedOccluders) {
+TEST(PredictionCounts, CountsPredictedAndVerifiedOccludersSeparately) {
   const Json scene = balls(150, 1);
   const Rays<float> rays = any_rays<float>(3, 1000, 5);
   const auto counts = [&](const Stage<float>& stage) {
@@ -201,7 +201,7 @@ TEST(PredictionCounts, SeparatesPredictedFromVerifiedOccluders) {
   EXPECT_EQ(wrong.primitive_tests, bare.primitive_tests + 1000);
 }
 
-TEST(PredictionCounts, LowersTestCountForCoherentRays) {
+TEST(PredictionCounts, LastOccluderSavesTestsForCoherentRays) {
   const Json scene = balls(150, 1);
   const Rays<float> rays = neighbouring_rays<float>(20'000, 4);
   Structure<float> bare(scene, "list"), last(scene, "list", [](const auto&primitives, auto behind) {

@@ -95,7 +95,7 @@ TYPED_TEST(RayOrders, SortsEqualKeysStably) {
   Rays<T> places, directions;
   for (int i = 0; i < 600; ++i) {
     places.push_back({{T(i % 2), T(0), T(0)}, {T(0), T(1), T(0)}});
-    // In adjacent cells of direction space.
+    // The two directions are in adjacent cells of direction space.
     directions.push_back({{T(0), T(0), T(0)}, {T(i % 2) / 5, T(1), T(0)}});
   }
   EXPECT_EQ(order_in<T>(places), expected);

@@ -15,9 +15,8 @@ namespace {
 
 const Exposure kExposure{0.1, 1.3};
 
-// Returns a scene with static and moving instances and planes tilted by an instance. Static meshes are
-// between moving ones. Some instances contain a deforming mesh. Keyframes are within and outside of the
-// exposure.
+// Returns a scene with static and moving instances and a plane in a tilting instance. Static and deforming
+// meshes alternate. Some instances contain a deforming mesh. Keyframes are inside and outside the exposure.
 Json busy_scene() {
   Random random(8);
   Json scene = scene_of(R"([
@@ -227,7 +226,8 @@ TEST(MotionBlur, BoundsRotatingGeometryTightly) {
   }
 }
 
-// Structures over static geometry are reused for the next exposure.
+// Static geometry is shared with the previous exposure or instant. The structure is refitted only after a
+// previous exposure.
 TEST(MotionBlur, ReusesStaticGeometryAcrossExposures) {
   const auto scene = load(busy_scene());
   const auto& type = type_named("bvh");
@@ -239,7 +239,7 @@ TEST(MotionBlur, ReusesStaticGeometryAcrossExposures) {
   for (const Accelerator<float>* known : {before.get(), between.get()}) {
     const auto geometry =
         make_geometry<float>(scene, type, later, known == before.get() ? first.get() : instant.get());
-    EXPECT_EQ(geometry->shapes[0], first->shapes[0]);  // the spheres
+    EXPECT_EQ(geometry->shapes[0], first->shapes[0]);  // the static sphere
     const auto followed = build_or_refit<float>(type, geometry->primitives, known);
     EXPECT_EQ(followed->facts().refitted, known == before.get());
     AcceleratorCounts counts;

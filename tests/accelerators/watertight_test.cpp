@@ -14,7 +14,7 @@ struct Ball {
   std::vector<std::array<int, 3>> triangles;
 };
 
-// Returns a ball of radius 2 with 24 rows of 48, 2,208 triangles.
+// Returns a ball of radius 2 in 24 rows and 48 columns of faces, with 2,208 triangles.
 Ball ball_around(const Vec3d& middle) {
   constexpr int kRows = 24, kColumns = 48;
   Ball ball;

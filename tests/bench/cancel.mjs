@@ -11,7 +11,7 @@ const cells = (values) => values.map((v, i) => (i === 0 ? v.padEnd(WIDTHS[i]) : 
 
 export const CANCEL = {
   name: "cancel",
-  what: `time from a stop request to the end of each stage, ${TIMES} times spread over its duration`,
+  what: `time from a stop request to the end of each stage, ${TIMES} requests spread over its duration`,
   needs: [PROGRAM],
   async run() {
     const done = spawnSync(PROGRAM, [String(TIMES)], { encoding: "utf8", stdio: ["ignore", "pipe", "inherit"] });

@@ -15,7 +15,7 @@ function text(x, y, words, { size = 11, anchor = "middle", color = "#333", weigh
   );
 }
 
-// Returns the mark of series i: a dot, or a square if there are more series than colours.
+// Returns the mark of series i: a dot, or a square if i is at least the number of colours.
 function mark(i, x, y, title) {
   const color = COLORS[i % COLORS.length],
     inside = title ? `<title>${escape(title)}</title>` : "";

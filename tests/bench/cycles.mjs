@@ -53,7 +53,7 @@ function summary(samples, runs) {
 
 // Estimates the set-up time (conversion, building, writing), which does not depend on the number of samples.
 // Extrapolates the CPU time of 1 sample and of the largest count to 0 samples. Returns the set-up time, and
-// the other rows less this time.
+// the other rows with this time subtracted.
 function withoutSetup([one, ...rows]) {
   const most = rows.at(-1),
     aSample = (most.cpuS - one.cpuS) / (most.samples - one.samples);
@@ -61,7 +61,7 @@ function withoutSetup([one, ...rows]) {
   return { setupS, rows: rows.map((row) => ({ ...row, cpuS: row.cpuS - setupS })) };
 }
 
-// Returns {setupS, rows, pictures} for each renderer. The images are those of the largest sample count.
+// Returns {setupS, rows, pictures} for each renderer. The images have the largest sample count.
 async function measurePair(renderers, counts, pair) {
   const seeds = [2 * pair + 1, 2 * pair + 2];
   const rows = { ours: [], theirs: [] },
@@ -127,8 +127,8 @@ function printErrors(rows, pairs) {
   }
 }
 
-// Compares the CPU seconds to the error `target / side` in blocks of side x side pixels. With independent
-// pixels, blocks reach it at the same time as pixels reach `target`.
+// Compares the CPU seconds that the renderers need for the error `target / side` in blocks of side x side
+// pixels. With independent pixels, blocks reach this error at the same time as pixels reach `target`.
 function ratioRow(scene, pairs, rows, block, target) {
   const side = BLOCKS[block],
     error = target / side;

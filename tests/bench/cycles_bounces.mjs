@@ -1,5 +1,5 @@
-// Compares the means of the Cornell box by path length, from 0 to 6 bounces, with those of Cycles. Reveals
-// errors that cancel in the image.
+// Compares the means of the Cornell box by path length, from 0 to 6 bounces, with the means of Cycles.
+// Reveals errors that cancel in the image.
 
 import { channelStatistics, differences } from "./cycles_bias.mjs";
 import { showProgress } from "./measure.mjs";

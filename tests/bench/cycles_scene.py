@@ -89,8 +89,8 @@ def convert(record, folder):
     return scene
 
 
-# Adds an environment. The middle of the image is toward +x in Cycles and toward -z in orrery. Its top is
-# toward +z in Cycles and toward +y in orrery.
+# Adds an environment. The middle of the image is toward +x in Cycles and toward -z in orrery. The top of the
+# image is toward +z in Cycles and toward +y in orrery.
 def surround(tree, record, folder):
     nodes, links = tree.nodes, tree.links
     picture = nodes.new("ShaderNodeTexEnvironment")
@@ -104,12 +104,12 @@ def surround(tree, record, folder):
     links.new(picture.outputs["Color"], nodes["Background"].inputs["Color"])
 
 
-# Sets the options of a preset. "fair" is unbiased: no clamping, no light threshold, no adaptive sampling. Its
-# samples are numbered N to 2N - 1, because Cycles traces sample 0 of every pixel through the centre instead
-# of sampling the filter. Sample 0 would cause an error of 1/N at edges, equal for every seed. Samples N to 2N
-# - 1 are equally well stratified. "defaults" has Blender's values of these five options. A `threshold`
-# enables adaptive sampling in both presets. Neither preset denoises. Both use orrery's pixel filter and path
-# length.
+# Sets the options of a preset. "fair" is unbiased: no clamping, no light threshold, no glossy filter, no
+# adaptive sampling. The samples are numbered N to 2N - 1, because Cycles traces sample 0 of every pixel
+# through the centre instead of sampling the filter. Sample 0 would cause an error of 1/N at edges, equal for
+# every seed. Samples N to 2N - 1 are equally well stratified. "defaults" has Blender's values of all five
+# options. A `threshold` enables adaptive sampling in both presets. Neither preset denoises. Both use orrery's
+# pixel filter and path length.
 def choose_preset(cycles, preset, samples, threshold):
     fair = preset == "fair"
     cycles.sample_offset = samples if fair else 0

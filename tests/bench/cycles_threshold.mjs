@@ -24,8 +24,8 @@ function displayError(a, b) {
   return Math.sqrt(squares / a.values.length);
 }
 
-// Returns a reference image by the same renderer with many samples. Its error is small compared with the
-// requested errors.
+// Returns a reference image of the same renderer with many samples, and an estimate of its error. This error
+// is small compared with the requested errors.
 async function referenceOf(render) {
   const pictures = [];
   for (const seed of [101, 102])

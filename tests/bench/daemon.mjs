@@ -24,8 +24,8 @@ function readPorts(child) {
   });
 }
 
-// Starts a service on these ports, or on free ones if 0. Resolves to {port, healthPort, pid, gone, signal(),
-// stop()}. `gone` resolves to the exit status, or null after a signal.
+// Starts a service on these ports, or on free ports if they are 0. Resolves to {port, healthPort, pid, gone,
+// signal(), stop()}. `gone` resolves to the exit status, or null after a signal.
 export async function startService(words = [], { port = 0, healthPort = 0 } = {}) {
   const child = spawn(ORRERY, ["serve", "--port", `${port}`, "--health-port", `${healthPort}`, ...words.map(String)], {
     stdio: ["ignore", "pipe", "ignore"],

@@ -1,5 +1,5 @@
-// Measures the latency of a drag in headless Chromium: from a pointer movement to the preview drawn for it,
-// less the service's time for this image.
+// Measures the latency of a drag in headless Chromium: from a pointer movement to the resulting preview, less
+// the service's time for this image.
 
 import { packageFile, startBrowser, startDaemon } from "../browser/support.mjs";
 
@@ -69,7 +69,7 @@ async function run() {
     await page.locator('#stage[data-shows="still"]').waitFor();
     await dragFor(page, SECONDS);
     const { inputs, previews } = await page.evaluate(() => window.notes);
-    // Counts only the first preview of each movement. Later previews show the glide after it.
+    // Counts only the first preview of each movement. Later previews show the glide after the movement.
     const first = previews.filter(({ input }, at) => input && previews[at - 1]?.input !== input);
     console.log(
       `\n${inputs.length} movements, ${previews.length} previews of ${SCENE}, ${previews[0]?.width} pixels wide`,

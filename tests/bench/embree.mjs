@@ -1,4 +1,5 @@
-// Compares ray and build times on typical meshes with Embree's: table, geometric mean, worst case and chart.
+// Compares ray and build times on typical meshes with Embree. Prints a table, geometric means and worst
+// cases, and draws a chart.
 
 import { mkdirSync, readdirSync, writeFileSync } from "node:fs";
 import { spawnSync } from "node:child_process";
@@ -105,8 +106,8 @@ export const EMBREE = {
       }
     }
     const ofMode = (mode) => rows.filter((row) => row.mode === mode);
-    printSummary("compared with its default mode", ofMode("default"));
-    printSummary("compared with its watertight mode ROBUST", ofMode("robust"));
+    printSummary("compared with Embree's default mode", ofMode("default"));
+    printSummary("compared with Embree's watertight mode ROBUST", ofMode("robust"));
     console.log(`required ratio ${REACH}, desired ${AIM}; bytes per triangle, ours/theirs`);
     mkdirSync(charts, { recursive: true });
     writeFileSync(

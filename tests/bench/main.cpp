@@ -15,8 +15,8 @@
 // Compares orrery's BVH with Embree's on the same mesh and the same rays, on one thread.
 //   bench SUBJECT|FILE TRIANGLES open|room default|robust [STRUCTURE]
 //   bench list
-// Prints facts of both sides as JSON, including the measurement kinds: the kinds of rays, and "build". For
-// each input line "ours KIND" or "theirs KIND", it then runs this side once and prints its CPU seconds.
+// Prints facts of both sides as JSON, including the measurement kinds: the kinds of rays, and "build". Then,
+// for each input line "ours KIND" or "theirs KIND", runs this side once and prints the CPU seconds.
 namespace orrery::bench {
 namespace {
 

@@ -1,4 +1,4 @@
-// Runs the benchmarks and prints their table. Ratios are theirs / ours, so above 1 orrery is better.
+// Runs the benchmarks and prints their table. Ratios are theirs / ours: above 1, orrery is better.
 
 import { writeFileSync } from "node:fs";
 import { loadavg } from "node:os";

@@ -1,4 +1,4 @@
-// Interleaves the runs of both sides. The speed of a machine drifts, but hardly between neighbouring runs.
+// Interleaves the runs of both sides. The speed of a machine drifts, but little between consecutive runs.
 
 export function median(values) {
   const sorted = [...values].sort((a, b) => a - b);

@@ -34,7 +34,8 @@ struct MeshBuilder {
                                      std::array{2, 3, 7, 6}, std::array{0, 2, 6, 4}, std::array{1, 3, 7, 5}})
       add_quad(corner(a), corner(b), corner(c), corner(d));
   }
-  // Adds a block on a floor, rotated by `angle` radians about its vertical axis. `half` is half its side.
+  // Adds a block on a floor, rotated by `angle` radians about its vertical axis. `half` is half the side of
+  // the block.
   void add_block(const Vec3d& foot, double half, double height, double angle) {
     const auto at = [&](double x, double y, double z) {
       return foot + Vec3d(half * (x * std::cos(angle) - z * std::sin(angle)), y * height,

@@ -76,7 +76,7 @@ function comparison(subject, what, words) {
       const { frames, refitted, surface_area_growth: surfaceAreaGrowth, primitives } = facts;
       const remark =
         `${primitives} primitives; ${refitted} of ${frames} frames refitted; ` +
-        `relative surface area of boxes at most ${surfaceAreaGrowth.toFixed(2)} times that of the build`;
+        `relative surface area of boxes at most ${surfaceAreaGrowth.toFixed(2)} times the value after the build`;
       return { ...sides, remark };
     },
   };

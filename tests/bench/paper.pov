@@ -4,7 +4,7 @@
 global_settings {
   assumed_gamma 1
   ambient_light rgb 0.4
-  max_trace_level 6  // our depth 5: a camera ray has depth 0 there and level 1 here
+  max_trace_level 6  // depth 5 in orrery, where camera rays have depth 0 instead of level 1
   adc_bailout 0      // traces all rays, however weak
 }
 background { rgb 0.4 }
@@ -17,7 +17,7 @@ camera {
 }
 light_source { <1, 1, 1> * 1e5 rgb 2 parallel point_at 0 }
 
-// Metal by Schlick's approximation, from its index of refraction and its extinction.
+// Metal by Schlick's approximation, from index of refraction and extinction coefficient.
 #declare N = <0.14, 0.16, 0.13>;
 #declare K = <4.1, 2.3, 3.1>;
 #declare F0 = ((N - 1) * (N - 1) + K * K) / ((N + 1) * (N + 1) + K * K);

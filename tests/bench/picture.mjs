@@ -41,8 +41,8 @@ function channelsOf(list) {
   return names;
 }
 
-// Inflates a ZIP or ZIPS block and undoes its predictor: even bytes come before odd ones, and each byte is
-// the difference from the previous one.
+// Inflates a ZIP or ZIPS block and undoes its predictor: even bytes come before odd bytes, and each byte is
+// the difference from the previous byte.
 function unpack(packed) {
   const bytes = inflateSync(packed),
     half = (bytes.length + 1) >> 1,
@@ -99,7 +99,7 @@ export function blockMeans({ width, height, values }, side) {
   return { width: across, height: height / side, values: means };
 }
 
-// Returns the mean of (a - b) (c - d) over pixels and channels. REQUIRES: all images have one size.
+// Returns the mean of (a - b) (c - d) over pixels and channels. REQUIRES: all images have the same size.
 export function meanProduct(a, b, c, d) {
   let sum = 0;
   for (let i = 0; i < a.values.length; ++i) sum += (a.values[i] - b.values[i]) * (c.values[i] - d.values[i]);

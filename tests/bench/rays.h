@@ -26,7 +26,7 @@ using FindHits = std::function<Hits(const RaySet&)>;
 
 // Returns the kinds of rays:
 //   "primary": camera rays in blocks of 4 x 4 pixels
-//   "bounce", "bounce-4": cosine-weighted off the surface, once and after four bounces
+//   "bounce", "bounce-4": cosine-weighted directions after one bounce and after four bounces
 //   "point", "area": any hit, from the points that the camera sees to a light
 //   "short": any hit within half a radius, in cosine-weighted directions
 std::span<const char* const> ray_kinds();

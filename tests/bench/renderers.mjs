@@ -11,7 +11,7 @@ import { readExr } from "./picture.mjs";
 const THREADS = 2; // for both renderers, so that the number of cores favours neither
 const ANSWER = /^rendered (\S+)$/;
 
-// Starts Blender once, because its start takes a second. Its other output is ignored.
+// Starts Blender once, because its start takes a second. Ignores other output of Blender.
 function startBlender(scene) {
   const words = ["-b", "--factory-startup", "-noaudio", "--python-exit-code", "1", "-P", "tests/bench/cycles_scene.py"];
   const child = spawn("blender", [...words, "--", scene], { stdio: ["pipe", "pipe", "ignore"] });
@@ -46,11 +46,11 @@ function renderOurs(scene, { samples, error, seed, bounces, size, out }) {
 
 // Returns {ours(order), theirs(order), stop()}. An order is {samples, seed, bounces, preset, threshold,
 // error}:
-//   bounces: reflections before the last light; 0 is direct light
+//   bounces: maximum number of indirect bounces; 0 allows only direct light
 //   preset ("fair" or "defaults") and threshold (noise): for Cycles only
 //   error, in display values: replaces samples, for ours only
-// The result is {cpuS, picture}, where cpuS counts all threads and includes building. Ours adds its
-// statistics.
+// The result is {cpuS, picture}, where cpuS counts all threads and includes building. The result
+// of ours() also contains orrery's statistics as `told`.
 export function startRenderers(scene, size) {
   const folder = mkdtempSync(join(tmpdir(), "renderers-"));
   const out = join(folder, "picture.exr");

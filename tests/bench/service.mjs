@@ -23,7 +23,7 @@ const PROPERTIES = [BLOCKADE, MEMORY, HEALTH, OVERLOAD, LEAVES, SIGTERM, RESTART
 
 const USAGE =
   "usage: tests/bench/run service [PROPERTY...] [--seconds N] [--times N] [--json FILE] [--list]\n" +
-  "  --seconds: duration of timed properties; --times: number of repetitions of the others";
+  "  --seconds: duration of timed properties; --times: number of repetitions of the other properties";
 
 function fail(message) {
   console.error(`bench: ${message}\n${USAGE}`);

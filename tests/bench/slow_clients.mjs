@@ -9,7 +9,7 @@ import { startService } from "./daemon.mjs";
 
 const SECONDS = Number(process.env.BENCH_ATTACK_S ?? 60); // duration of each attack
 const CONNECTIONS = 1000,
-  RATE = 200; // RATE: per second
+  RATE = 200; // new connections per second
 const EVERY_MS = 50;
 const SPARE = 4; // file descriptors for normal clients
 
@@ -127,7 +127,7 @@ const row = (cells) => cells.map((cell, i) => (i === 0 ? cell.padEnd(COLUMNS[i])
 
 export const SLOW_CLIENTS = {
   name: "slow-clients",
-  what: `latency of normal clients during ${CONNECTIONS} slowhttptest connections, ${SECONDS} s in each of its modes`,
+  what: `latency of normal clients during ${CONNECTIONS} slowhttptest connections, ${SECONDS} s in each mode`,
   needs: ["slowhttptest"],
   async run() {
     console.log(

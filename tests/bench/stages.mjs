@@ -1,4 +1,4 @@
-// Compares structures behind a stage with the structure alone.
+// Compares a structure behind a stage with the structure alone.
 
 import { mkdirSync, writeFileSync } from "node:fs";
 import { FOLDER, randomNumbers, sceneOf, writeBall, writeSubjects } from "./subjects.mjs";
@@ -41,7 +41,7 @@ function remarkOf({ rays, ray_s: rayS, occluded, proposals, proofs, build_ms: bu
   const alone = `${rays} rays, ${(1e9 * rayS).toFixed(0)} ns each in the structure alone`;
   if (stage !== "predict") return alone;
   return (
-    `${alone}, ${percent(occluded, rays)} occluded, of these ${percent(proofs, occluded)} proved by ` +
+    `${alone}, ${percent(occluded, rays)} occluded, of which ${percent(proofs, occluded)} proved by ` +
     `${(proposals / rays).toFixed(2)} proposals a ray, ${buildMs.toFixed(0)} ms of training`
   );
 }
@@ -82,8 +82,8 @@ function predictions(short, scene, subject, structure = USUAL) {
   );
   const nearest = comparison(
     `prediction-${where}-nearest`,
-    `camera rays among ${scene} with known nearest hits, compared with ${structure} alone: upper bound of what ` +
-      "prediction of hits could save",
+    `camera rays among ${scene} with known nearest hits, compared with ${structure} alone: upper bound of the ` +
+      "savings by prediction of hits",
     subject,
     [structure, "known", "nearest"],
   );

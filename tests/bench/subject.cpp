@@ -65,11 +65,12 @@ Subject scan(int triangles) {
   return {std::move(mesh)};
 }
 
-// CAD export: a plate with holes and shafts. It has large flat faces, and round faces of triangles 1/100 as
-// wide as long.
+// CAD export: a plate with holes and shafts. It has large flat faces, and round faces of triangles whose
+// width is 1/100 of their length.
 Subject cad(int triangles) {
   constexpr int kHoles = 5;  // per side
-  // 8 triangles per segment and hole: two fans and a wall per hole, walls and caps of the shafts.
+  // At most 8 triangles per segment and hole: two fans and a wall of the hole, and a wall and two caps of a
+  // shaft in every second hole.
   const int segments = std::max(8, static_cast<int>(triangles / (8.0 * kHoles * kHoles)));
   MeshBuilder out;
   for (int row = 0; row < kHoles; ++row)
@@ -102,7 +103,7 @@ Subject foliage(int triangles) {
   return {std::move(out.mesh)};
 }
 
-// Hair: ribbons 1/400 as wide as long.
+// Hair: ribbons whose width is 1/400 of their length.
 Subject hair(int triangles) {
   constexpr int kPieces = 8;
   std::mt19937 random(4);

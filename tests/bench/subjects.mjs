@@ -81,8 +81,8 @@ function writeBumpySphere(path, triangles, radius) {
   writePly(path, side * (side + 1), vertex, 2 * side * side, triangle);
 }
 
-// Functions that make the subjects. They may write files to FOLDER. They return the scene, the path of a
-// scene to copy, null if they have written <name>.json, or undefined if a file is missing.
+// Functions that make the subjects and may write files to FOLDER. Each returns the scene, the path of a scene
+// to copy, null if they have written <name>.json, or undefined if a file is missing.
 const SUBJECTS = {
   few: () => "scenes/glass.json",
   flake: () => {

@@ -1,5 +1,6 @@
 #!/usr/bin/env node
-// Tests a service that requires a token, simulated by rejecting requests without one.
+// Tests the page against a service that requires an access token. The service is simulated: requests of the
+// browser without the token get status 401.
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
@@ -11,7 +12,8 @@ const { daemon, browser } = await startBoth(after);
 const TOKEN = "correct-horse";
 const HASH = "#scene=paper&playing=0&samples=1&az=20";
 
-// Opens the page and rejects its requests to v1 without the token. `refused` and `passed` list their paths.
+// Opens the page. Its requests to v1/ get status 401 unless they contain the token. `refused` and `passed`
+// list the paths of requests without and with the token.
 async function guardedPage(options = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, ...options });
   const page = await context.newPage();
@@ -45,7 +47,7 @@ async function enter(page, token) {
   await page.keyboard.press("Enter");
 }
 
-test("the page asks for the token once and sends it with every request", async () => {
+test("one form asks for the token, and the page sends it with every request", async () => {
   const { page, refused, passed, close } = await guardedPage({ permissions: ["clipboard-read", "clipboard-write"] });
   const form = page.getByRole("dialog", { name: /requires an access token/ });
   await form.waitFor();

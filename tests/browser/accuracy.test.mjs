@@ -67,7 +67,7 @@ pageTest(
 );
 
 pageTest(
-  "without a chart, the page predicts the results of the budgets",
+  "without a chart, the page predicts the outcome of each budget",
   "scene=cornell-box&playing=0&samples=2",
   async (page) => {
     const requested = [];
@@ -126,7 +126,7 @@ pageTest(
 );
 
 pageTest(
-  "arrow keys move the slider between its stops and describe each stop",
+  "arrow keys move the slider between its stops, and the page describes each stop",
   "playing=0",
   async (page) => {
     const slider = await charted(page);
@@ -137,7 +137,7 @@ pageTest(
       last = await valueText();
       assert.match(last, lineShape);
       assert.equal(await text(page, "stop-line"), last);
-      assert.match(await text(page, "stop-note"), /^Bound without the reference: error (unknown because of \w+|≤)/);
+      assert.match(await text(page, "stop-note"), /^Bound without a reference image: error (unknown because of \w+|≤)/);
       lines.push(last);
     }
     assert.ok(lines.length >= 3, lines.join("\n"));
@@ -213,7 +213,7 @@ pageTest(
 );
 
 pageTest(
-  "key R and its button show the reference while held",
+  "key R and its button show the reference image while held",
   "playing=0",
   async (page) => {
     const slider = await charted(page);
@@ -327,7 +327,7 @@ pageTest(
 );
 
 pageTest(
-  "a missed budget reports the reason, and its image can be downloaded",
+  "the page reports why a budget was missed, and the download link reproduces the image",
   "scene=paper&playing=0",
   async (page) => {
     await page.route("**/frame.png?*error=*", async (route) => {
@@ -365,7 +365,7 @@ pageTest(
 );
 
 pageTest(
-  "the link keeps a time budget, and the page reports the used time",
+  "the link keeps a time budget, and the page reports its outcome",
   "playing=0&seconds=0.3",
   async (page) => {
     await eventually("the budget", async () => /^Limit (met|missed): /.test(await text(page, "budget-status")));
@@ -388,7 +388,7 @@ pageTest(
 );
 
 pageTest(
-  "a failed chart reports the reason, and a cancelled one can be made again",
+  "a failed chart reports the reason, and a cancelled chart can be made again",
   "playing=0",
   async (page) => {
     await rest(page);

@@ -135,7 +135,7 @@ for (const [width, height] of [
 }
 
 pageTest(
-  "forced colours mark the selected items",
+  "selected items are marked in forced colours",
   "playing=0",
   async (page) => {
     await rest(page);
@@ -161,7 +161,7 @@ pageTest(
   { forcedColors: "active" },
 );
 
-pageTest("the gallery is one tab stop, and arrow keys move in it", "playing=0", async (page) => {
+pageTest("the gallery is one tab stop, and keys move the focus in it", "playing=0", async (page) => {
   await rest(page);
   const options = page.locator('#gallery [role="option"]');
   const count = await options.count();

@@ -115,7 +115,7 @@ pageTest(
   refused,
 );
 
-pageTest("a link to a view below the floor opens a view above it", "scene=mirrors&el=-80&playing=0", async (page) => {
+pageTest("a link to a view below the floor opens above the floor", "scene=mirrors&el=-80&playing=0", async (page) => {
   await rest(page);
   const lowest = Number((await hashOf(page)).el);
   assert.ok(lowest > -30 && lowest < 0, `${lowest} degrees`);

@@ -64,8 +64,8 @@ test("a stream truncated inside a frame is a retryable error", async () => {
 
 const PIXELS = 600; // image height in these tests, in pixels
 
-// Lets `camera` glide at `rate` frames per second. Returns the number of frames until it stops. Fails after
-// ten seconds.
+// Lets `camera` glide at `rate` frames per second and calls `each()` after each step. Returns the number of
+// frames until the camera stops. Fails after ten seconds.
 function glide(camera, rate = 60, each = () => {}) {
   for (let frames = 1; frames <= 10 * rate; frames += 1) {
     if (!camera.step(1 / rate, PIXELS)) return frames;
@@ -208,7 +208,7 @@ test("a pan during a glide uses the scale of the goal", () => {
   assert.equal(camera.dolly(0.01), 0.04, "from 1/2 to 1/50, the minimum");
 });
 
-test("the camera glides to a pan and back on reset", () => {
+test("the camera glides to a panned view and back on reset", () => {
   const camera = new OrbitCamera();
   camera.pan(1, 0);
   const goal = camera.goal.pan[0];
@@ -255,7 +255,7 @@ test("offsetOf() and placeOf() are inverses", () => {
   }
 });
 
-test("a URL hash restores settings and view, and invalid values are ignored", () => {
+test("a URL hash restores settings and view, and invalid values are clamped or ignored", () => {
   const usual = parseHash("");
   const settings = { ...usual.settings, ref: "mirror", playing: false, technique: "raycast", samples: 16 };
   const view = { azimuth: 12.5, elevation: -3, distance: 0.5, pan: [0.5, -1e-7, 12345], time: 1.25 };

@@ -97,7 +97,7 @@ pageTest(
   still,
 );
 
-pageTest("an orbit ignores budgets, and choosing one pauses it", "seconds=0.3&speed=1", async (page) => {
+pageTest("an orbit ignores budgets, and choosing a budget pauses the orbit", "seconds=0.3&speed=1", async (page) => {
   await drag(page, 50, 0, async () => {
     await rest(page);
     assert.equal(await text(page, "budget-status"), "");
@@ -109,7 +109,7 @@ pageTest("an orbit ignores budgets, and choosing one pauses it", "seconds=0.3&sp
 });
 
 pageTest(
-  "until an image with a budget is rendered, the error map is that of the image without it",
+  "while a budget render is pending, the error map shows the image without the budget",
   "playing=0",
   async (page) => {
     await rest(page);

@@ -10,8 +10,8 @@ const { Pace } = await load("pace.js");
 const { passes, qualityLevels, samplesAtRest } = await load("quality.js");
 const { Refiner } = await load("refine.js");
 
-// Plays an orbit for `seconds` whose frames take `frameMs(level, now)`. `costs` are the relative costs of the
-// levels. Returns the pace and the `starts` of its streams, each [time, level, fps].
+// Simulates an orbit of `seconds`. A frame takes `frameMs(level, now)` milliseconds. `costs` are the relative
+// costs of the levels. Returns the pace and the `starts` of the streams, each [time, level, fps].
 function paced(frameMs, costs, seconds, speed = 20) {
   const pace = new Pace();
   const starts = [[0, pace.level, pace.fps]];
@@ -70,7 +70,7 @@ test("an orbit at the coarsest level keeps its speed with fewer frames", () => {
   assert.deepEqual({ level, fps }, { level: 0, fps: 8 });
 });
 
-test("an orbit never steps by more than 10 degrees, and fast frames change nothing", () => {
+test("an orbit never steps by more than 10 degrees, and fast frames keep its rate and level", () => {
   assert.equal(paced(() => 5000, [1], 60).pace.fps, 2);
   assert.deepEqual(paced(() => 5, [4, 1], 20).starts, [[0, 0, 30]]);
 });
@@ -131,14 +131,14 @@ test("render times are estimated from the last image of the scene", () => {
   assert.equal(cost.expectedMs({ ...picture, width: 200 }), 100);
 });
 
-test("the still image has the chosen samples, otherwise those of the scene or 64", () => {
+test("the still image has the chosen samples, else the larger of 64 and the scene's samples", () => {
   assert.equal(samplesAtRest(0, 1, 4096), 64);
   assert.equal(samplesAtRest(0, 256, 4096), 256);
   assert.equal(samplesAtRest(0, 1, 32), 32);
   assert.equal(samplesAtRest(16, 64, 4096), 16);
 });
 
-test("each pass has half the samples of the next", () => {
+test("each refinement pass has half the samples of the next pass", () => {
   assert.deepEqual(passes(64), [1, 2, 4, 8, 16, 32, 64]);
   assert.deepEqual(passes(100), [1, 3, 6, 12, 25, 50, 100]);
   assert.deepEqual(passes(1), [1]);

@@ -80,8 +80,8 @@ pageTest(
   async (page) => {
     await rest(page);
     const { width } = await page.locator("#stage").boundingBox();
-    // Counts requests inside the page, because the driver may report a request before the end of the previous
-    // one.
+    // Counts requests inside the page, because the driver may report a request before the previous request
+    // has ended.
     await page.evaluate(() => {
       const realFetch = window.fetch;
       window.previews = [];
@@ -101,7 +101,7 @@ pageTest(
     });
     await page.evaluate(() => {
       const button = document.querySelector('[data-do="right"]');
-      // Without pauses, so that the view does not rest in between.
+      // Clicks without pauses, so that the view does not come to rest.
       for (let n = 0; n < 4; n += 1) button.click();
     });
     const atRest = await rest(page);
@@ -149,7 +149,7 @@ pageTest(
   { expected: /status of (429|500)/ },
 );
 
-pageTest("a drag interrupts the orbit, which continues after it", "speed=30", async (page) => {
+pageTest("after a drag, the orbit continues at the new elevation", "speed=30", async (page) => {
   const height = await drag(page, 0, 40);
   const state = await eventually("the new elevation", async () => {
     const hash = await hashOf(page);
@@ -263,7 +263,7 @@ pageTest(
   },
 );
 
-pageTest("technique and size can be chosen", "playing=0", async (page) => {
+pageTest("the image has the chosen technique and size", "playing=0", async (page) => {
   const before = await rest(page);
   await page.locator("#size").selectOption("1280x720");
   await eventually("the size", async () => (await canvasDigest(page)).startsWith("1280x720 "));
@@ -339,7 +339,7 @@ for (const colorScheme of ["light", "dark"]) {
 
 const WARNING = "Nothing is hit; The camera is inside an object";
 
-// Adds a warning to responses if `ask(url)` is true.
+// Adds WARNING to the responses of images and orbits for which `ask(url)` is true.
 async function warn(page, ask) {
   await page.route(/(frame\.png|orbit)\?/, async (route) => {
     if (!ask(new URL(route.request().url()))) return route.continue();

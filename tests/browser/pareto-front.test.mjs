@@ -26,13 +26,13 @@ const point = (cpuMs, rmse, more = {}) => ({
   ...more,
 });
 
-test("each stop is more accurate than all cheaper ones, and its place is the logarithm of its cost", () => {
+test("slider stops are Pareto optimal and spaced by the logarithm of their cost", () => {
   const points = [point(100, 0.01), point(1, 0.5), point(10, 0.1), point(12, 0.11)];
   const stops = stopsOf({ front: [1, 2, 3, 0], points, noise_floor: 0.001 });
   assert.deepEqual(
     stops.map((stop) => points.indexOf(stop.point)),
     [1, 2, 0],
-    "the point at 12 ms costs more than that at 10 ms and has a larger error",
+    "the point at 12 ms costs more than the point at 10 ms and has a larger error",
   );
   for (const [at, place] of [0, 0.5, 1].entries()) near(stops[at].place, place, 1e-9, "place of the stop");
   assert.deepEqual(
@@ -47,7 +47,7 @@ test("each stop is more accurate than all cheaper ones, and its place is the log
   );
 });
 
-test("the text of a point has its time and error", () => {
+test("lineOf() describes the time, error and settings of a point", () => {
   assert.equal(
     lineOf(point(80, 0.0036)),
     "0.8 s, error ≤ 0.004 (95 % confidence), whitted, depth 5, 16 samples, float",
@@ -57,7 +57,7 @@ test("the text of a point has its time and error", () => {
   assert.deepEqual([0.0123, 0.42, 12.34, 240].map(duration), ["12 ms", "0.42 s", "12 s", "4 min"]);
 });
 
-test("the plan of a link has no view and size", () => {
+test("a plan in a link contains neither view nor size, and malformed plans are ignored", () => {
   const plan = planOf(
     point(1, 1, { plan: "azimuth_degrees=30&fov=50&width=320&height=240&technique=path&precision=float&seed=2" }),
   );
@@ -71,7 +71,7 @@ test("the plan of a link has no view and size", () => {
   assert.equal(parseHash("#seconds=9999").settings.seconds, 60);
 });
 
-test("URLs and jobs have the options and budgets of the plan", () => {
+test("URLs and job bodies contain the options and budgets of the plan", () => {
   const picture = { id: "s", azimuth: 1, elevation: 2, distance: 1, pan: [0, 0, 0], width: 8, height: 6, samples: 16 };
   const planned = { ...picture, technique: "path", more: "precision=float&max_depth=3" };
   assert.match(frameUrl(planned), /technique=path&samples=16&precision=float&max_depth=3$/);
@@ -121,7 +121,7 @@ test("budgetText() reports whether a budget was met and why not", () => {
   assert.deepEqual(met, { missed: false, text: "Limit met: 1.9 s of 2 s; error ≤ 0.0071 (95 % confidence)" });
 });
 
-test("predictionText() reports the predicted result of a budget", () => {
+test("predictionText() reports the predicted outcome of a budget", () => {
   const forecast = (rms, met, space) => ({
     budget: { used_s: 1.234, error_met: met, seconds_met: met },
     certificate: { total: { kind: rms === null ? "unknown" : "estimated", rms }, space },

@@ -13,8 +13,8 @@ const isFrame = (url) => url.pathname.endsWith("/frame.png");
 const isRefinement = (url) => url.pathname.endsWith("/refinement");
 const samplesOf = (url) => Number(url.searchParams.get("samples"));
 
-// Forwards images as if each sample in full size took `ms` milliseconds. Returns the list of the samples of
-// full-size requests.
+// Forwards images and reports a render time of `ms` milliseconds per sample in full size. Returns a list to
+// which the sample count of each full-size request is appended.
 async function watch(page, ms = 1) {
   const requested = [];
   await page.route(isFrame, async (route) => {
@@ -51,7 +51,8 @@ function bodyOf(frames) {
   );
 }
 
-// Forwards refinements after change(frames). Returns the list of requests as {samples, passes}.
+// Forwards refinements with their frames replaced by change(frames). Returns a list to which each request is
+// appended as {samples, passes}.
 async function watchRefinements(page, change = (frames) => frames) {
   const requested = [];
   await page.route(isRefinement, async (route) => {
@@ -129,7 +130,7 @@ pageTest(
 );
 
 pageTest(
-  "input cancels a refinement, and its remaining time is marked as an estimate",
+  "the remaining time of a refinement is marked as an estimate, and input cancels it",
   "playing=0&samples=1&az=60",
   async (page) => {
     await rest(page);
@@ -168,7 +169,7 @@ pageTest("showing the error does not move the stage", "playing=0&samples=1", asy
   }
 });
 
-// Rejects refinements as if they exceeded the limit of a request.
+// Rejects refinements as if they exceeded the ray limit of a request.
 const refuseRefinements = (page) =>
   page.route(isRefinement, (route) =>
     route.fulfill({ status: 422, json: { title: "Too much", detail: "request_rays" } }),

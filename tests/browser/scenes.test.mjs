@@ -110,7 +110,7 @@ daemonTest("a late response to an older text is dropped", "playing=0&samples=1",
   const good = await page.locator("#text").inputValue();
   const held = [];
   await page.route("**/v1/scenes", (route) => {
-    // Other requests are from the gallery.
+    // Holds only the checks of the two edited texts.
     const isCheck = /"radius": (-77|0\.75)/.test(route.request().postData());
     return isCheck ? void held.push(route) : route.continue();
   });
@@ -151,7 +151,7 @@ daemonTest("line numbers follow the scrolling of a long text", "playing=0&sample
   assert.ok(Math.abs(offset) <= 1, `the last number is ${offset} pixels from its line`);
 });
 
-daemonTest("a pasted scene is shown, and Back returns to the previous one", "playing=0&samples=1", async (page) => {
+daemonTest("a pasted scene is shown, and Back returns to the previous scene", "playing=0&samples=1", async (page) => {
   const before = await rest(page);
   await apply(page, (text) => text.replace(/"radius": 0\.5/, '"radius": 0.25'));
   await eventually("another image", async () => (await canvasDigest(page)) !== before);
@@ -191,7 +191,7 @@ daemonTest("an evicted scene is posted again", "playing=0&samples=1", async (pag
   await eventually("the first image", async () => (await canvasDigest(page)) === before);
 });
 
-daemonTest("the page reports a stopped service and continues when it runs again", "", async (page, daemon) => {
+daemonTest("the page reports a stopped service and continues when the service runs again", "", async (page, daemon) => {
   await eventually("frames", async () => Number((await hashOf(page)).az) > 0);
   await daemon.stop();
   const notice = page.locator("#notice");
@@ -291,7 +291,7 @@ daemonTest("a late repost does not replace the scene picked last", "scene=paper&
   assert.equal(await rest(page), picked);
 });
 
-daemonTest("a hidden tab stops the orbit, which continues when the tab is visible", "", async (page) => {
+daemonTest("the orbit stops in a hidden tab and continues when the tab is visible", "", async (page) => {
   const show = (visibility) =>
     page.evaluate((state) => {
       Object.defineProperty(document, "visibilityState", { get: () => state, configurable: true });

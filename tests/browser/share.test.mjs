@@ -22,7 +22,7 @@ async function copiedUrl(page) {
   return url;
 }
 
-// Returns true if the canvas shows the pixels of a PNG.
+// Resolves to whether the canvas shows the pixels of a PNG.
 const shows = (page, png) =>
   page.evaluate(async (base64) => {
     const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
@@ -81,7 +81,7 @@ pageTest("during refinement, the download is the image on the stage", "playing=0
   assert.ok(await eventually("the pixels of the image after the fade", () => shows(page, bytes)));
 });
 
-pageTest("while the view moves, the download is the still image", "samples=16&speed=1", async (page) => {
+pageTest("during a move, the download is the still image at its end", "samples=16&speed=1", async (page) => {
   await page.locator('#stage[data-shows="stream"]').waitFor();
   assert.equal(samplesOf(await linkOf(page)), "16");
   const ahead = await page.evaluate(() => {

@@ -57,7 +57,7 @@ test("rejects an unknown name", () => {
   assert.equal(store.get().speed, 20);
 });
 
-test("notifies other listeners after one has thrown", () => {
+test("keeps notifying listeners after a listener has thrown", () => {
   const store = new Store({ speed: 20 });
   store.subscribe(["speed"], ({ speed }) => {
     if (speed === 30) throw new Error("listener");

@@ -14,7 +14,7 @@ const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium";
 const START_TIMEOUT_MS = 600_000;
 const require = createRequire(import.meta.url);
 
-// Returns the path of a package's file in nodeModules or NODE_PATH, or null if it is not installed.
+// Returns the path of a package's file in node_modules or NODE_PATH, or null if the package is not installed.
 export function packageFile(name) {
   try {
     return require.resolve(name);
@@ -23,7 +23,7 @@ export function packageFile(name) {
   }
 }
 
-// Exits with the status for "skipped" if the browser or its driver is missing.
+// Exits with status SKIPPED if the browser or its driver is missing.
 export function skipWithoutBrowser() {
   for (const [what, present] of [
     [CHROMIUM, existsSync(CHROMIUM)],
@@ -35,7 +35,7 @@ export function skipWithoutBrowser() {
   }
 }
 
-// Starts `orrery serve` on `port`, or on a free port if it is 0. Returns {url, stop()}.
+// Starts `orrery serve` on `port`, where 0 means any free port. Resolves to {url, stop()}.
 export async function startDaemon(port = 0) {
   const program = process.env.TEST_ORRERY ?? join(ROOT, "build/orrery");
   const child = spawn(program, ["serve", "--port", String(port), "--health-port", "0"], {
@@ -45,7 +45,7 @@ export async function startDaemon(port = 0) {
   let output = "";
   const url = await new Promise((resolve, reject) => {
     const timer = setTimeout(
-      () => reject(new Error(`${program} did not print its address within ${START_TIMEOUT_MS} ms; output: ${output}`)),
+      () => reject(new Error(`${program} did not print its URL within ${START_TIMEOUT_MS} ms; output: ${output}`)),
       START_TIMEOUT_MS,
     );
     const fail = (why) => {

@@ -10,8 +10,8 @@
 namespace orrery::test {
 namespace {
 
-// Returns a small lamp on the axis, 4 m from a lens of radius `aperture_radius` that is focused at `focus`.
-// The field of view is 40 degrees.
+// Returns a scene with a small lamp on the axis, 4 m from a lens. `aperture_radius`: radius of the lens in
+// metres. `focus`: focus distance in metres. The field of view is 40 degrees.
 Json lamp_before_lens(double aperture_radius, double focus) {
   return scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 0.02}]",
                   "{'camera': {'fov_degrees': 40, 'aperture_radius': " + std::to_string(aperture_radius) +
@@ -28,7 +28,7 @@ constexpr double kPixelAngle = 2 * 0.363970234266202 / 128;  // tangent of the a
 
 // A point at distance z is blurred to a disk of radius r |z - f| / z in the focal plane. The total light
 // equals that of a pinhole camera.
-TEST(ThinLens, BlursPointToDisk) {
+TEST(ThinLens, BlursPointToDiskOfExpectedRadius) {
   covers("R26 light-41");
   const double sharp = picture_of(lamp_before_lens(0, 4)).sum();
   for (const double focus : {2.0, 3.0, 8.0}) {
@@ -36,7 +36,7 @@ TEST(ThinLens, BlursPointToDisk) {
     const Picture blurred = picture_of(lamp_before_lens(radius, focus));
     EXPECT_NEAR(blurred.sum() / sharp, 1, 0.02) << focus;
     // Twice the second moment of a uniform disk is its squared radius. The moments of the lamp and of a pixel
-    // add to that of the blur.
+    // add to the moment of the blur.
     double moment = 0;
     for (int y = 0; y < 128; ++y)
       for (int x = 0; x < 128; ++x)

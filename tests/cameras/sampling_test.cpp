@@ -79,7 +79,7 @@ TEST_P(Lens, SamplesApertureUniformly) {
 INSTANTIATE_TEST_SUITE_P(Blades, Lens, testing::Values(0, 3, 4, 5, 6, 7, 16));
 
 // Returns the value of the filter at `x` pixels from its centre, with the filter's default width and without
-// normalization. The formulas are those of the papers.
+// normalization. Implements the published formulas.
 double height(Filter filter, double x) {
   constexpr double pi = std::numbers::pi;
   x = std::abs(x);
@@ -104,8 +104,8 @@ double height(Filter filter, double x) {
 
 class PixelFilters : public testing::TestWithParam<Filter> {};
 
-// The density of samples in the positive or negative part of a filter is that part of f(x) f(y). The part's
-// weight is its integral.
+// The product f(x) f(y) of a filter has a positive and a negative part. The density of samples of a part is
+// proportional to the part's magnitude, and the weight of the part is its integral.
 TEST_P(PixelFilters, SamplesInProportionToFilterValue) {
   covers("light-24 light-25");
   const Filter filter = GetParam();

@@ -88,7 +88,7 @@ TEST(Channels, InterpolatesMeshTextureCoordinates) {
     }
 }
 
-TEST(Channels, GrowsFootprintWithDistance) {
+TEST(Channels, StoresPixelWidthAtHitAsFootprint) {
   const char* const wall = "[{'type': 'plane', 'point': [0, 0, -6], 'normal': [0, 0, 1]}]";
   const Layers layers = render_layers(scene_of(wall), odd_size(), {"footprint"});
   EXPECT_NEAR(layers.at(0, 0, 16, 16), 10 * 2 * std::tan(std::numbers::pi / 8) / 33, 1e-6);
@@ -124,7 +124,7 @@ TEST(Channels, LeavesImageUnchanged) {
     for (int x = 0; x < 64; ++x) ASSERT_EQ(with.linear(x, y), without.at(x, y)) << x << ", " << y;
 }
 
-// A render stopped after a pass equals the render with that sample count, and can be resumed.
+// Passes of 4, 1 and 4 samples add up to the film of a single render with 9 samples.
 TEST(Film, AccumulatesPassesToFullRender) {
   const PreparedScene scene(load(sample("glass")));
   RenderRequest request = size(70, 45);
@@ -153,8 +153,8 @@ TEST(Film, AccumulatesPassesToFullRender) {
   EXPECT_EQ(whole.values(1, 0), passes.values(1, 0));
 }
 
-// An image converted from a film of higher precision equals the image that the film of lower precision
-// stores.
+// A film stores `sums`, linear float or sRGB codes. An image converted from a more precise film equals the
+// image in a film of the image's format.
 TEST(Film, ReturnsSameImageFromEveryStorage) {
   const PreparedScene scene(load(sample("paper")));
   RenderRequest request = size(50, 40);

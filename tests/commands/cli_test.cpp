@@ -72,7 +72,7 @@ TEST_F(CommandLine, WritesFormatOfFileExtension) {
   EXPECT_EQ(run("render " + scene + " -o " + file("nosuch/a.png")).status, 1);
 }
 
-TEST_F(CommandLine, CountsEveryRayInStats) {
+TEST_F(CommandLine, ReportsRaysTimesAndOptionsInStats) {
   const Outcome result = run("render " + write("s.json", kScene) + " --stats=json --samples 4 --width 20");
   ASSERT_EQ(result.status, 0) << result.err;
   const auto stats = nlohmann::json::parse(result.out);
@@ -133,7 +133,7 @@ TEST_F(CommandLine, ReadsSceneFromStandardInput) {
   EXPECT_EQ(bytes_of(file("a.png")), bytes_of(file("b.png")));
 }
 
-TEST_F(CommandLine, ReportsFileAndPointerOfProblemsInCheck) {
+TEST_F(CommandLine, CheckReportsFileAndPointerOfProblems) {
   const std::string good = write("good.json", kScene);
   std::string text = kScene;
   text.replace(text.find("\"radius\": 1"), 11, "\"radius\": -1");
@@ -154,7 +154,7 @@ TEST_F(CommandLine, ReportsFileAndPointerOfProblemsInCheck) {
   EXPECT_EQ(problems[0].at("severity"), "error");
 }
 
-TEST_F(CommandLine, WarnsAboutUselessImages) {
+TEST_F(CommandLine, WarnsAboutCameraInsideOpaqueShape) {
   std::string text = kScene;
   text.replace(text.find("[0, 0, 4]"), 9, "[0, 0, 0.5]");
   const std::string inside = write("inside.json", text), said = "camera is inside an opaque shape";
@@ -184,7 +184,7 @@ TEST_F(CommandLine, RejectsLayersForFormatsWithoutLayers) {
   EXPECT_EQ(run("orbit " + scene + " --frames 2 --layers depth -o " + file("a-%d.png")).status, 2);
 }
 
-TEST_F(CommandLine, ReportsInvalidOptionsAsGiven) {
+TEST_F(CommandLine, NamesInvalidOptionAndSuggestsCorrection) {
   const std::string scene = write("s.json", kScene);
   const Outcome number = run("render " + scene + " --azimuth x --width 5000");
   EXPECT_EQ(number.status, 2);

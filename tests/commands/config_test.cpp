@@ -7,7 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-// Tests the sources of the service's settings and the errors for invalid ones.
+// Tests the sources of the service's settings and the errors for invalid settings.
 namespace orrery {
 namespace {
 
@@ -90,7 +90,7 @@ TEST_F(Config, ReportsAllErrorsAtOnce) {
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 17) << outcome.err;
 }
 
-TEST_F(Config, PreventsStartWithInvalidSettings) {
+TEST_F(Config, RefusesToStartWithInvalidSettings) {
   for (const char* wrong : {"ORRERY_PORTT=1", "ORRERY_PORT=http", "ORRERY_CORS_ORIGIN=*"})
     EXPECT_EQ(serve("--port 0 --health-port 0", wrong).status, 2) << wrong;
   for (const char* wrong : {"--portt 0", "--port", "somewhere", "-x", "--port 8081",

@@ -73,7 +73,7 @@ TEST(Help, PrintsSameTextForFlagAndHelpCommand) {
   EXPECT_EQ(run_program("--help").text, run_program("help").text);
 }
 
-TEST(Help, StartsWithCommonOptions) {
+TEST(Help, ListsCommonOptionsFirstInFixedOrder) {
   for (const char* command : {"render", "orbit"}) {
     const std::string text = run_program(std::string(command) + " --help").text;
     std::size_t before = text.find("Common options:");
@@ -88,8 +88,8 @@ TEST(Help, StartsWithCommonOptions) {
   }
 }
 
-// The help of render and orbit names every image option. Only `help options` describes options that are not
-// common.
+// The help of each image command names every image option. Only `help options` describes the options that are
+// not common.
 TEST(Help, ListsImageOptionsByNameInCommandHelp) {
   const std::string described = run_program("help options").text;
   for (const RenderOption& option : render_options()) {

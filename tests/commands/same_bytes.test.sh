@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Checks that every sample scene gives the same PNG for two settings of threads and rays per slice, or for
-# four and a larger image with TEST_EXHAUSTIVE=yes. With TEST_LEVELS=yes, also compares the lower instruction
-# levels of this machine, which tunables of the loader select.
+# Checks that the PNG of every sample scene does not depend on --threads and --slice. Compares a render on one
+# thread with two variants, or with four variants of a larger image if TEST_EXHAUSTIVE=yes. If
+# TEST_LEVELS=yes, also compares the lower instruction levels of this machine, which GLIBC_TUNABLES selects.
 set -euo pipefail
 orrery=${TEST_ORRERY:-build/orrery}
 size="--width 60 --height 44" exhaustive=${TEST_EXHAUSTIVE:-no}

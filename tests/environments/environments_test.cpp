@@ -17,7 +17,7 @@ constexpr double kPi = std::numbers::pi;
 
 Vec3d tilted(double angle) { return {std::sin(angle), std::cos(angle), 0}; }
 
-// Returns the mean of an image of the floor, from a quarter of a million samples. Paths end at the sky.
+// Returns the mean pixel value of an image of the floor with 262,144 samples. Paths end at the sky.
 double floor_mean(const std::shared_ptr<const Scene>& scene) {
   RenderRequest request = size(64, 64);
   request.technique = "path";
@@ -51,7 +51,7 @@ TEST(GradientEnvironment, MatchesAnalyticIrradiance) {
     EXPECT_NEAR(floor_mean(load(floor_under(half_white, tilted(angle)))), (1 + std::cos(angle)) / 2, 1e-3);
 }
 
-TEST(GradientEnvironment, AppearsInEveryTechnique) {
+TEST(GradientEnvironment, IsVisibleToRaysInEveryTechnique) {
   const Json scene = floor_under(
       {{"type", "gradient"}, {"zenith", {4, 1, 1}}, {"horizon", {2, 1, 1}}, {"ground", {0.5, 1, 1}}},
       tilted(0));
@@ -114,19 +114,20 @@ TEST(ImageEnvironment, MatchesSumOverDirections) {
           Vec3d(std::sin(angle) * std::sin(back), std::cos(angle), std::sin(angle) * std::cos(back)));
       sum += map.at(place.x, place.y).radiance.x * cosine * std::sin(angle);
     }
-  const double expected = kScale * sum * 2 * kPi / (double{kSteps} * kSteps);  // over pi
+  const double expected = kScale * sum * 2 * kPi / (double{kSteps} * kSteps);  // irradiance / pi
   Json scene = floor_under(
       {{"type", "image"}, {"file", "f"}, {"rotation_degrees", kDegrees}, {"scale", kScale}}, normal);
   EXPECT_NEAR(floor_mean(load_scene(parse_document(scene.dump()), SingleImageSource(picture))) / expected, 1,
               3e-3);
-  // With a second light, each of the two is sampled half of the time.
+  // With a second light, each light is sampled with probability 1/2.
   scene["lights"] = Json::array(
       {{{"type", "directional"}, {"direction_to_light", numbers(normal)}, {"intensity", {3, 3, 3}}}});
   EXPECT_NEAR(floor_mean(load_scene(parse_document(scene.dump()), SingleImageSource(picture))), expected + 3,
               5e-3 * (expected + 3));
 }
 
-// Expects the radiance and density of light samples to equal those along rays in the same directions.
+// Expects the radiance and density of light samples to equal the results of beyond() for rays in the same
+// directions.
 template <class T>
 void expect_draws_as_seen(const Scene& scene, T tolerance) {
   const LightKernelPtr<T> kernel = scene.environment->kernel(T());
@@ -153,7 +154,7 @@ void expect_draws_as_seen(const Scene& scene, T tolerance) {
     ASSERT_NEAR(out->incident[i].x * std::numbers::pi_v<T> * out->pdf[i] / (*radiance)[i].x, T(1), tolerance);
   }
 }
-TEST(ImageEnvironment, MatchesSamplesWithRayRadianceAndDensity) {
+TEST(ImageEnvironment, LightSamplesMatchRadianceAndDensityAlongRays) {
   covers("light-24");
   Random random(8);
   const Texels picture = painted(32, 16, [&](int, int) { return Vec3d(0.1 + random.unit()); });
@@ -191,7 +192,7 @@ TEST(ImageEnvironment, IsBitIdenticalAcrossThreadsAndScales) {
        {{"type", "directional"}, {"direction_to_light", {1, 1, 1}}, {"angle_degrees", 8}}});
   scene.erase("background");
   EXPECT_TRUE(identical(picture_of(scene, 1), picture_of(scene, 3)));
-  scene["lights"].erase(1);  // with a second light, selection depends on the size of the scene
+  scene["lights"].erase(1);  // with two lights, light selection depends on the size of the scene
   const Picture one = picture_of(scene, 1);
   EXPECT_TRUE(identical(one, picture_of(scaled(scene, 0x1p-17), 0)));
   EXPECT_TRUE(identical(one, picture_of(scaled(scene, 0x1p17), 0)));

@@ -58,7 +58,7 @@ TEST(ImportanceTable, SamplesCellsByProbability) {
   EXPECT_TRUE(ImportanceTable(4, 3, std::vector<float>(12, 0.0f)).empty());
 }
 
-// Within a cell half a texel wide the density is bilinear, so its mean is its value at the centre.
+// In a cell half a texel wide, the density is bilinear, so its mean equals its value at the cell's centre.
 TEST(LightMap, SamplesInProportionToDensity) {
   covers("light-24");
   constexpr int kWidth = 16, kHeight = 8, kDraws = 1'000'000;
@@ -184,7 +184,7 @@ Moments floor_under(const LightMap& map, int draws) {
   return {mean, squares / draws - mean * mean};
 }
 
-TEST(LightMap, ReducesNoiseWithoutBiasByCompensation) {
+TEST(LightMap, CompensationReducesVarianceWithoutBias) {
   covers("light-35");
   constexpr int kDraws = 400'000;
   const Texels sky = sky_with_sun(300);

@@ -32,7 +32,8 @@ class SingleImageSource final : public AssetSource {
   const Texels picture_;
 };
 
-// Returns a white floor in an environment with this image.
+// Returns a scene with a white floor that has the normal `normal`, in an environment with this image. `more`:
+// further members of the environment.
 inline std::shared_ptr<const Scene> surrounded(const Texels& picture, const Vec3d& normal,
                                                const Json& more = Json::object()) {
   Json scene = scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]}]",

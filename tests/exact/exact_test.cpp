@@ -9,7 +9,7 @@
 #include "tests/support/structures.h"
 
 // Compares the renderer's visibility with exact arithmetic, pixel by pixel. The environment variable
-// EXACT_PIXELS sets the number of pixels over all scene classes. Each is compared in float and double.
+// EXACT_PIXELS sets the number of pixels over all scene classes. Each pixel is compared in float and double.
 namespace orrery::test {
 namespace {
 

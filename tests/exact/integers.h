@@ -9,8 +9,8 @@ namespace orrery::exact {
 
 using Integer = mpz_class;
 
-// Number of fraction bits of irrational factors (unit directions, sines). They are stored as integers in
-// units of 2^-kFractionBits.
+// Number of fraction bits of irrational factors (unit directions, sines). Such factors are stored as integers
+// in units of 2^-kFractionBits.
 inline constexpr unsigned kFractionBits = 256;
 inline const Integer kOne = Integer(1) << kFractionBits;
 
@@ -72,7 +72,7 @@ struct Root {
 
 // Returns the sign of a - b.
 inline int compare(const Root& a, const Root& b) {
-  // x + y with x = i + j sqrt(a.d) and y = k sqrt(b.d)
+  // a - b has the sign of x + y, where x = i + j sqrt(a.d) and y = k sqrt(b.d).
   const Integer i = a.p * b.q - b.p * a.q, j = a.s * b.q, k = -b.s * a.q;
   const int of_x = sign_of(i, j, a.d), of_y = sgn(b.d) == 0 ? 0 : sgn(k);
   if (of_x * of_y >= 0) return of_x != 0 ? of_x : of_y;

@@ -230,7 +230,8 @@ bool Oracle::explains(int x, int y, int object, double roundings, double epsilon
   const std::vector<Ray> moved = moved_rays(ray, in_play.t, distance);
   const mpf_class slack = distance / in_play.speed;
 
-  // Rounding moves each object independently. Tests whether it can make `object` the nearest.
+  // Rounding moves the ray independently for each object. Tests whether such moves can make `object` the
+  // nearest.
   std::optional<mpf_class> soonest;
   for (const Item& item : items_)
     if (item.object == object)

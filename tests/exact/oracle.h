@@ -23,9 +23,9 @@ class Oracle {
   // (sphere, plane, triangle, mesh, box, disk, cylinder), then by order in the scene. Instances come last.
   int object_at(int x, int y) const;
 
-  // Returns true if rounding can make a renderer see `object` at the pixel. Ray origin and hit may move
-  // across the ray, and the hit along it. Each moves by at most `roundings` times `epsilon` times the largest
-  // coordinate involved.
+  // Returns true if rounding can make a renderer see `object` at the pixel. Rounding may move the ray's
+  // origin across the ray, and the hit across and along the ray. Each move is at most `roundings` times
+  // `epsilon` times the largest coordinate involved.
   bool explains(int x, int y, int object, double roundings, double epsilon) const;
 
  private:
@@ -64,15 +64,15 @@ class Oracle {
   Ray seen_by(const Item& item, const Ray& ray) const;
   Nearest nearest(const Ray& ray) const;
   Reach reach(const Ray& ray, int object) const;
-  // Returns the ray with its origin and its point at `t` moved across the ray by `distance` metres. Each
-  // moves in eight directions or stays.
+  // Returns 81 rays. The ray's origin and its point at `t` are each moved across the ray by `distance` metres
+  // in one of eight directions, or not moved.
   std::vector<Ray> moved_rays(const Ray& ray, const mpf_class& t, double distance) const;
 
   int shift_;  // one scene unit is 2^-shift_ metres
   int width_, height_;
   bool parallel_ = false;
   IVec eye_, back_, right_, up_;  // unit directions times one common factor
-  Integer scale_;                 // that factor
+  Integer scale_;                 // common factor of the three directions
   Integer extent_;                // half the image height, in scene units (orthographic) or 2^-kFractionBits
   std::vector<Item> items_;
   std::vector<Placement> placements_;

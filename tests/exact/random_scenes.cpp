@@ -135,7 +135,8 @@ json lattice(Random& random) {
     if (kind == 5 && length(cross(b - a, c - a)) > 0)
       objects.push_back(tetrahedron(a, b, c, a + cross(b - a, c - a)));
   }
-  // The eye is offset by half a pixel, because the pixel centres of an image of 24 rows are at half metres.
+  // A pixel is 0.5 m wide (24 rows in 12 m). The offset of half a pixel moves pixel centres to multiples of
+  // 0.5 m.
   return parallel(scene(objects, Vec3d(0.25, 0.25, 8), Vec3d(0.25, 0.25, 0), 45), 12);
 }
 

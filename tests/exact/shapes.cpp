@@ -13,7 +13,7 @@ void keep_nearer(OptionalRoot& nearest, Root t) {
 
 IVec from(const Ray& ray, const IVec& point) { return ray.origin - point * ray.w; }
 
-// Returns the crossing of the ray with the plane through `point`, or nullopt if the ray is parallel to it.
+// Returns the crossing of the ray with the plane through `point`, or nullopt if they are parallel.
 OptionalRoot crossing(const Ray& ray, const IVec& point, const IVec& normal) {
   const Integer along = dot(ray.direction, normal);
   if (along == 0) return {};
@@ -88,7 +88,7 @@ OptionalRoot disk(const Shape& s, const Ray& ray) {
   return nearest;
 }
 
-// Intersects finite and infinite cylinders. `s.b` is the top of a finite one and the axis of an infinite one.
+// Intersects finite and infinite cylinders. `s.b`: top of a finite cylinder, axis of an infinite cylinder.
 OptionalRoot cylinder(const Shape& s, const Ray& ray) {
   const bool capped = s.kind == Shape::Kind::cylinder;
   const IVec axis = capped ? s.b - s.a : s.b;

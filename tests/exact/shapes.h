@@ -18,7 +18,8 @@ struct Ray {
 // Shape with lengths and positions in the scene's units. Normals and axes may have any length.
 struct Shape {
   enum class Kind { sphere, plane, triangle, box, disk, cylinder, infinite_cylinder } kind;
-  IVec a, b, c;  // centre | point, normal | corners | min, max | centre, normal | base, top | point, axis
+  // By kind: centre | point, normal | corners | min, max | centre, normal | base, top | point, axis.
+  IVec a, b, c;
   Integer radius = 0;  // for sphere, disk and cylinders
   double reach = 0;    // largest coordinate in metres, which scales rounding errors
 };

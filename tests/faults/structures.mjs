@@ -44,7 +44,7 @@ export const structureFaults = [
     from: "normalize(pose.normal(found->geometric.at(i)))",
     to: "normalize(pose.vector(found->geometric.at(i)))",
     target: "test_accelerators",
-    tests: ["Instance.ReturnsOutwardNormalsAtAnyScale"],
+    tests: ["Instance.ReturnsOutwardNormalsAndClearOffsetsAtAnyScale"],
   },
   {
     fault: 11,

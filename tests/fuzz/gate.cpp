@@ -84,7 +84,7 @@ void check_answers(std::string_view bytes) {
       continue;
     }
     const std::size_t length = std::strtoul(head.c_str() + at + 18, nullptr, 10);
-    // The next response follows at once: this one answered HEAD and has no body.
+    // A response to HEAD has no body, so the next response follows its header.
     if (bytes.starts_with("HTTP/1.1 ")) continue;
     if (bytes.empty()) return;  // the last response, to HEAD
     require(length <= bytes.size());

@@ -57,7 +57,7 @@ std::string problem(std::span<const std::byte> bytes, std::size_t max_pixels = s
 
 constexpr std::array<std::pair<int, int>, 4> kSizes = {{{1, 1}, {3, 2}, {64, 64}, {257, 31}}};
 
-TEST(Png, RoundTripsEveryByteAtEveryLevel) {
+TEST(Png, RoundTripsPixelsAtEveryCompressionLevel) {
   for (const auto& [width, height] : kSizes)
     for (const int level : {1, 6, 9}) {
       const Image image = noise(width, height);
@@ -79,7 +79,7 @@ TEST(Encoding, StopsOnCancellation) {
   EXPECT_THROW(encode_exr(linear), Cancelled);
 }
 
-TEST(Exr, RoundTripsEveryFloat) {
+TEST(Exr, RoundTripsFloatsBitwise) {
   for (const auto& [width, height] : kSizes) {
     const Image image = floats(width, height);
     EXPECT_TRUE(same(decode_image(bytes_of(encode_exr(image))), image)) << width << " x " << height;

@@ -45,7 +45,7 @@ TEST(Srgb, RoundsToNearestCodeOfStandardCurve) {
   for (int i = 0; i <= 1'000'000; ++i) values.push_back(static_cast<float>(i) * 1e-6f);
   test::Random random(1);
   for (int i = 0; i < 500'000; ++i) values.push_back(static_cast<float>(random.magnitude(1e-6, 1)));
-  // Around the end of the linear segment.
+  // All floats around the end of the linear segment.
   for (float x = 0.003f; x < 0.0033f; x = std::nextafter(x, 1.0f)) values.push_back(x);
   const std::vector<int> codes = codes_of(values);
   int wrong = 0, doubtful = 0;
@@ -83,7 +83,7 @@ TEST(Srgb, RoundTripsEveryCode) {
   for (int code = 0; code < 256; ++code) EXPECT_EQ(codes[static_cast<std::size_t>(code)], code);
 }
 
-// Writes rows of any length, at any place, in both formats. No other pixel may change.
+// Writes rows of 1 to 33 pixels at columns 0 to 19, in both formats. No other pixel may change.
 TEST(Image, WritesOnlyPixelsOfRow) {
   struct alignas(64) Row {
     std::array<float, 64> values;

@@ -7,7 +7,7 @@
 #include "tests/support/random.h"
 #include "tests/support/tracing.h"
 
-// Tests area, directional and line lights with paths.
+// Tests directional lights with an angle (suns) and line lights, with path tracing and Whitted ray tracing.
 namespace orrery::test {
 namespace {
 
@@ -179,8 +179,8 @@ TEST(Line, MatchesIrradianceOfPointLights) {
   }
 }
 
-// The floor point is on or near the axis of a vertical line light above it. In the limit, the irradiance is 1
-// / near - 1 / far.
+// The floor point is on or near the axis of a vertical line light. On the axis, the irradiance is 1 / near -
+// 1 / far, where near and far are the distances of the light's ends.
 TEST(Line, StaysFiniteOnItsAxis) {
   for (const double aside : {1e-3, 1e-6, 1e-9}) {
     const Estimate found =

@@ -57,8 +57,8 @@ SelectedLight choose(const LightTree<T>& tree, const Vec3<T>& at, double u) {
 
 constexpr int kCounts[] = {1, 2, 5, 16, 17, 33, 300, 5000};
 
-// Samples weighted by their inverse probability count every light equally.
-TEST(LightTree, WeightsEveryLightEqually) {
+// For every light, the sum of 1 / probability over its draws, divided by the number of all draws, has mean 1.
+TEST(LightTree, InverseProbabilityWeightingIsUnbiased) {
   covers("light-23");
   constexpr int kDraws = 10000;
   const auto lights = lights_of(33, small_light);
@@ -149,7 +149,8 @@ TEST(LightTree, SamplesInProportionToProbability) {
   }
 }
 
-// A light hit by a BSDF sample is weighted by the probability of its selection by the tree.
+// The MIS weight of a light that a BSDF sample hits uses the probability with which the tree selects this
+// light.
 TEST(LightTree, SumsMisWeightsToOne) {
   covers("light-21");
   const LightTree<double> tree(lights_of(33, any_light));
@@ -196,8 +197,8 @@ TEST(LightTree, IsScaleInvariant) {
   }
 }
 
-// Coincident lights and lights of zero strength have equal probabilities. At a light's centre, all
-// probabilities are finite.
+// The probabilities of 100 coincident lights sum to 1, even if the lights have zero strength or the surface
+// point is at their centre.
 TEST(LightTree, SelectsAmongCoincidentLights) {
   for (const double strength : {0.0, 1.0}) {
     const LightTree<double> tree(std::vector<LightBounds>(

@@ -47,7 +47,7 @@ TEST(Attenuation, ClampsFormulaToOne) {
   EXPECT_EQ(weakened(Vec3d(0, 1, 0), 0.5), 1) << "attenuation never amplifies";
 }
 
-TEST(Attenuation, FollowsInverseSquareIfUnlimited) {
+TEST(Attenuation, FollowsInverseSquareWithoutClamp) {
   for (const char* type : {"point", "spot"}) {
     Json light = point_light(Vec3d(0, 0, 1));
     light["type"] = type;
@@ -151,8 +151,8 @@ TEST(Directional, IsParallelBelowAngularResolution) {
   EXPECT_TRUE(sun(1e-5f).extended());
 }
 
-// Checks every registered light: unit directions, no light below 0 or above its intensity, and float close to
-// double.
+// Checks every registered light type: unit directions, no light below 0 or above its intensity, and float
+// close to double.
 TEST(AllLights, SendsUnitDirectionsWithinIntensity) {
   const std::vector<Json> lights = {
       json("{'type': 'directional', 'direction_to_light': [1, 2, 3], 'intensity': [1, 2, 3]}"),

@@ -14,7 +14,8 @@
 namespace orrery {
 namespace {
 
-// Returns true if `act` throws Cancelled after a stop request. Requires `act` to succeed without one.
+// Returns true if `act` throws Cancelled after a stop request. Requires `act` to succeed without a stop
+// request.
 template <class Act>
 bool is_interrupted(const Act& act) {
   act();
@@ -117,8 +118,8 @@ TEST(Interruption, YieldsWhileLoading) {
   EXPECT_GT(turn.asked, 0);
 }
 
-// A thread that holds the scene's lock must not yield its slot. It could not get a slot back while threads
-// that wait for this lock have all slots.
+// A thread that holds the scene's lock must not yield its slot. Otherwise threads that wait for the lock
+// could take all slots, and the thread could not continue.
 TEST(Interruption, NeverYieldsWhileSceneIsLocked) {
   const PreparedScene scene(load_scene(kScene));
   CountedTurn turn;

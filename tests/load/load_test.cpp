@@ -38,7 +38,7 @@ TEST(Load, RejectsNonPositiveRadii) {
   EXPECT_NE(problem_of_text("0.375", "NaN"), "accepted");
 }
 
-TEST(Load, RejectsInvalidNumbersAtTheirPath) {
+TEST(Load, RejectsInvalidNumbersAndReportsTheirPath) {
   covers("A36");
   for (const char* bad :
        {"NaN", "Infinity", "-Infinity", "1e999", "1,5", "0x10", "1.", ".5", "+1", "null", "\"1\"", "true"})

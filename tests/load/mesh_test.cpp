@@ -8,7 +8,7 @@
 namespace orrery::test {
 namespace {
 
-// Returns a roof of two squares that meet at 90 degrees, and a triangle without area.
+// Returns a roof of two rectangles that meet at 90 degrees, and a triangle without area.
 TriangleMesh roof() {
   TriangleMesh mesh;
   mesh.positions = {{0, 1, 0}, {0, 1, 2}, {1, 0, 0}, {1, 0, 2}, {-1, 0, 0}, {-1, 0, 2}};
@@ -85,7 +85,8 @@ TEST(AssetFiles, ReportsErrorsAtFileReference) {
             "/objects/0/crease_degrees");
 }
 
-// Next to the ridge, the normal is flat unless the crease angle exceeds 90 degrees, and then vertical.
+// Next to the ridge, the shading normal is the face normal for crease angles below 90 degrees, and vertical
+// above.
 TEST(AssetFiles, SmoothsEdgesBelowCreaseAngle) {
   const auto normal = [](const char* object) {
     return shading_normal(*load_scene(text_of(object), Shelf()), {1e-9, 3, 1}, {0, -1, 0});
@@ -101,7 +102,7 @@ TEST(AssetFiles, SmoothsEdgesBelowCreaseAngle) {
   EXPECT_LT(std::abs(smooth.x), 0.35);
 }
 
-// A file named by many objects is read once, and its size counts once for the limits.
+// A file that many objects refer to is read once.
 TEST(AssetFiles, ReadsEachFileOncePerLoad) {
   class Counting final : public AssetSource {
    public:
@@ -160,7 +161,7 @@ TEST(AssetFiles, KeepsMeshesSeparateInOneScene) {
   EXPECT_NEAR(shading_normal(*scene, {0.5, 3, 1}, {0, -1, 0}).x, std::sqrt(0.5), 1e-12);
 }
 
-// Smoothing around a vertex of n triangles compares n * n pairs of them.
+// Smoothing around a vertex of n triangles compares n * n pairs of triangles.
 TEST(AssetFiles, RejectsSmoothingAboveTriangleLimitPerVertex) {
   Json mesh = {{"type", "mesh"}, {"positions", {{0, 0, 1}}}, {"crease_degrees", 30}};
   const auto fan = [&](int triangles) {

@@ -74,7 +74,7 @@ TEST(OrenNayarMaterial, MatchesAnalyticAlbedo) {
   }
 }
 
-// Seen from the light, a rough sphere looks flatter than a Lambertian one: the limb is nearly as bright as
+// Seen from the light, a rough sphere looks flatter than a Lambertian sphere: the limb is nearly as bright as
 // the centre.
 TEST(OrenNayarMaterial, ScattersBackTowardLight) {
   const auto back = [](double cosine) {

@@ -71,7 +71,7 @@ TEST(Glass, EqualsRefractiveIfSmooth) {
   }
 }
 
-// Over two metres, the transmittance of each channel is the square of that over one metre.
+// The transmittance of a channel over two metres is the square of its transmittance over one metre.
 TEST(Glass, FiltersLightInsideIfRough) {
   const Probe<double> glass("{'type': 'glass', 'roughness': 0.5, 'filter': [0.9, 0.5, 0.1]}");
   const Probe<double> clear("{'type': 'glass', 'roughness': 0.5}");
@@ -195,7 +195,7 @@ TEST(CookTorrance, MatchesQuadratureOfFormula) {
         cases.push_back(seen_at(cosine));
         cases.back().light = tilted(std::sqrt((i + 0.5) / kSteps), (j + 0.5) / kSteps);
       }
-    Vec3d sum;  // over the squares of cosines: pi_bsdf_cos / cosine
+    Vec3d sum;  // integral of pi_bsdf_cos / cosine over the squared cosine
     const auto found = gold.evaluated(cases);
     for (std::size_t i = 0; i < cases.size(); ++i)
       sum = sum + found[i].pi_bsdf_cos / (cases[i].light.z * kSteps * kSteps);
@@ -216,7 +216,7 @@ TEST(Translucent, SplitsLightBetweenReflectionAndTransmission) {
   EXPECT_NEAR(length(on - Vec3d(0.5)), 0, 3e-3);
 }
 
-TEST(Materials, ReportsCreatedEnergy) {
+TEST(Materials, StoresLargestAlbedoInSceneFacts) {
   const auto most = [](const char* material) {
     const auto scene =
         load(scene_with(json("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'it'}]"),

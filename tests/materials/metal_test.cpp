@@ -19,7 +19,7 @@ Case seen_at(double cosine) {
   c.direction = -tilted(cosine);
   return c;
 }
-// Returns a perfect mirror: with n = 0 Fresnel's equations give 1.
+// Returns a metal that absorbs no light: for n = 0, Fresnel's equations give a reflectance of 1.
 Probe<double> perfect_mirror(double alpha) {
   return Probe<double>(
       Json{{"type", "metal"}, {"n", {0, 0, 0}}, {"k", {1, 1, 1}}, {"roughness", std::sqrt(alpha)}});
@@ -69,7 +69,7 @@ TEST(Microfacets, ProjectsToUnitArea) {
   }
 }
 
-TEST(Microfacets, MatchesAlbedoQuadrature) {
+TEST(Microfacets, AlbedoCurveMatchesQuadrature) {
   covers("light-27");
   double worst = 0;
   for (const double alpha : {0.001, 0.015, 0.05, 0.25, 0.77, 1.0}) {

@@ -141,7 +141,7 @@ void million_rays() {
   }
   EXPECT_EQ(wrong, 0);
 }
-TEST(Refraction, StaysFiniteForMillionRays) {
+TEST(Refraction, ConservesEnergyAndDirectionLengthForMillionRays) {
   covers("A32");
   million_rays<float>();
   million_rays<double>();

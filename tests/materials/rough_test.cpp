@@ -69,7 +69,7 @@ TEST(Highlight, IsFiniteInDegenerateCases) {
         Json{{"type", "rough"}, {"kd", 0}, {"ks", 1}, {"shininess", shininess}, {"shading", shading}});
   };
   for (const char* shading : {"phong", "blinn-phong"}) {
-    // A negative cosine is raised to a fractional power, and an exponent is 0 behind and in front of the
+    // A negative cosine with a fractional exponent, and the exponent 0 with light behind and in front of the
     // surface.
     EXPECT_EQ(of("phong", 2.5).reflected(lit_from(50, 45)).x, 0);
     EXPECT_EQ(of(shading, 0).reflected(lit_from(120, 0)).x, 0);

@@ -126,8 +126,8 @@ double chi_square_deviations(const Cells& expected, const std::vector<Probe<doub
 
 class Scattering : public testing::TestWithParam<Material> {};
 
-// With 85 tests, one run in a hundred would exceed 3.68 standard deviations (Sidak). The integral of the
-// density equals the fraction of samples that are not absorbed.
+// With correct samples, fewer than one in a hundred runs of these 80 tests exceeds 3.68 standard deviations
+// (Sidak). The integral of the density equals the fraction of samples that are not absorbed.
 TEST_P(Scattering, SamplesInProportionToDensity) {
   covers("light-24 light-25");
   const Probe<double> material(GetParam().text);
@@ -315,7 +315,7 @@ TEST_P(MaterialLobes, SumsToWholeMaterial) {
   EXPECT_NEAR(length(ambient - material_.ambient()), 0, 1e-14);
 }
 
-// Repeats the test of Scattering for single lobe classes, and for all lobes of paints (48 tests).
+// Repeats the test of Scattering for each lobe class of a material, and for all lobes of a paint.
 TEST_P(MaterialLobes, SamplesInProportionToDensity) {
   covers("light-24");
   constexpr int kDraws = 200'000;

@@ -43,7 +43,7 @@ TYPED_TEST(SlabTest, FindsRayMissedByTextbookMethod) {
 }
 
 // Rays in the plane of a face compute 0 * infinity. Four of these places touch the unit cube, two do not.
-// Each is tested for every axis, both signs of the direction and both signs of its zeros.
+// Each place is tested for every axis, both signs of the direction and both signs of its zeros.
 TYPED_TEST(SlabTest, AcceptsOnlyTouchingRaysInFacePlanes) {
   using T = TypeParam;
   test::covers("A28");

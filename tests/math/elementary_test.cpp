@@ -60,7 +60,7 @@ TYPED_TEST(Elementary, ComputesExp2WithinTwoUlp) {
   EXPECT_EQ(exp2_flushed(T(-1e30)), T(0));
 }
 
-// The relative error bound of the header is 2 y |log2 x| ulp, and at most 2.5e-5 (float) or 4e-13 (double)
+// The relative error bound in the header is 2 y |log2 x| ulp, and at most 2.5e-5 (float) or 4e-13 (double)
 // for normal results. Another 3 ulp allow for the exponential where the power is close to 1.
 TYPED_TEST(Elementary, ComputesPowersWithinDocumentedError) {
   using T = TypeParam;

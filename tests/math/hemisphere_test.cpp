@@ -19,15 +19,16 @@ namespace {
 double share_opposite(const Vec3d& d) {
   return std::max(0.0, 1 - std::abs(d.x / d.z)) * std::max(0.0, 1 - std::abs(d.y / d.z));
 }
-// Returns the fraction that exits through the side face that d.x points to. `reach` is the distance along x
-// at which a ray reaches the opposite face, at most 1. `turn` is the distance along x per unit along y.
+// Returns the fraction of these points from which the ray exits through the side face that `dx` points to.
+// `reach` is the distance along x at which a ray reaches the opposite face, at most 1. `turn` is the distance
+// along x per unit along y.
 double share_of_side(double dx, double dy, double dz) {
   const double reach = std::min(1.0, std::abs(dx / dz)), turn = std::abs(dx / dy);
   return reach < turn ? reach - reach * reach / (2 * turn) : turn / 2;
 }
 
 // Returns the fraction of cosine-distributed rays from uniform points of face `from` that reach each face.
-// Face 2 axis + 1 is the upper face of an axis, 2 axis the lower one.
+// Face 2 * axis + 1 is the upper face on an axis, and face 2 * axis is the lower face.
 std::array<double, 6> form_factors(std::size_t from) {
   constexpr std::uint32_t kStreams = 16, kSamples = 1 << 16;
   const std::size_t z = from / 2, x = (z + 1) % 3, y = (z + 2) % 3;

@@ -172,7 +172,7 @@ TEST(Sampling, ConvergesAsPower3Over4AtEdges) {
 }
 
 // The correlation between samples of neighbouring streams stays within 4 standard deviations of 0.
-TEST(Sampling, KeepsStreamsIndependent) {
+TEST(Sampling, KeepsStreamsUncorrelated) {
   constexpr int kPairs = 100'000;
   double sum = 0;
   for (std::uint32_t pixel = 0; pixel < kPairs; ++pixel) {

@@ -53,7 +53,7 @@ TEST(MeshFile, AppliesLimitsInEveryFormat) {
   }
 }
 
-TEST(MeshFile, RejectsOrReadsTruncatedFilesUpToCut) {
+TEST(MeshFile, RejectsTruncatedFilesOrReadsThemUpToCut) {
   const std::vector<Corners> whole = corners_of(cube());
   for (const File& file : cubes())
     for (std::size_t size = 0; size < file.bytes.size(); ++size) {

@@ -113,7 +113,7 @@ TEST(Gltf, ReadsOnlyNodesOfScene) {
 
 TEST(Gltf, ReadsInterleavedNormalizedAttributes) {
   Gltf gltf;
-  // x y z as floats, then u v as normalized bytes and two bytes of padding: 16 bytes a vertex.
+  // x y z as floats, then u v as normalized bytes and two bytes of padding: 16 bytes per vertex.
   std::string bytes;
   for (const Vec3d& p : kTriangle) {
     for (const double x : {p.x, p.y, p.z}) append(bytes, static_cast<float>(x));

@@ -49,7 +49,7 @@ TEST(Obj, ReplacesZeroNormalsByFaceNormals) {
   EXPECT_EQ(mesh.normals[1], Vec3d(0, 1, 0));
 }
 
-TEST(Obj, IgnoresTextLayout) {
+TEST(Obj, AcceptsAllLineEndingsCommentsAndIgnoredStatements) {
   const std::vector<Corners> plain = corners_of(read_mesh("v 0 0 0\nv 1 0 0\nv 1 1.5 0\nf 1 2 3\n"));
   for (const char* text :
        {"v 0 0 0\r\nv 1 0 0\r\nv 1 1.5 0\r\nf 1 2 3", "v 0 0 0\rv 1 0 0\rv 1 1.5 0\rf 1 2 3\r",
@@ -65,12 +65,12 @@ TEST(Obj, RoundsNumbersToNearestDouble) {
   EXPECT_EQ(mesh.positions[0], Vec3d(0.1, 123456.789012, -8.371950));
 }
 
-TEST(Obj, EndsCommentsAtLineEnd) {
+TEST(Obj, EndsCommentAtLineEndDespiteBackslash) {
   EXPECT_EQ(read_mesh("# from C:\\models\\\n" + kFour + "f 1 2 3\n").triangles,
             (std::vector<Triangle>{{0, 1, 2}}));
 }
 
-TEST(Obj, RejectsNumbersBeyondDoubleRange) {
+TEST(Obj, RejectsOverflowingAndRoundsUnderflowingNumbers) {
   const std::string large = "1" + std::string(400, '0') + "e-5", small = "0." + std::string(400, '0') + "1";
   EXPECT_THROW(read_mesh("v " + large + " 0 0\n" + kFour + "f 1 2 3\n"), InputError);
   EXPECT_EQ(read_mesh("v " + small + " 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").positions[0].x, 0);

@@ -18,8 +18,8 @@ const std::string kVertex = "element vertex 4\nproperty float x\nproperty float 
 const std::string kFace = "element face 1\nproperty list uchar int vertex_indices\n";
 const std::string kFour = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
 
-// Expects a mesh to be read whose coordinates, list lengths and indices have the scalar type `type`, in both
-// byte orders.
+// Expects read_mesh() to read a mesh whose coordinates, list lengths and indices have the PLY type `type`, in
+// both byte orders. If the type is not an integer type, list lengths have the type char.
 template <class T>
 void reads_as(const std::string& type) {
   for (const std::endian order : {std::endian::little, std::endian::big}) {
@@ -97,7 +97,7 @@ TEST(Ply, ReadsFacesBeforeVertices) {
 }
 
 // A binary body begins right after the last line of the header, whatever its first byte.
-TEST(Ply, HandlesLineEndsBeforeBinaryBody) {
+TEST(Ply, StartsBinaryBodyRightAfterHeaderLine) {
   for (const std::string end : {"\n", "\r\n", "\r"}) {
     std::string bytes;
     for (const char c : header("binary_little_endian",
@@ -128,7 +128,7 @@ TEST(Ply, ReportsLineOfHeaderErrors) {
   EXPECT_THAT(ascii("element vertex 1\nproperty half x\n"),
               HasSubstr("line 4: must be a PLY type such as int or float32 (got \"half\")"));
   EXPECT_THAT(ascii("element face 1\nproperty list float int vertex_index\n"),
-              HasSubstr("length of a list must have an integer type"));
+              HasSubstr("list length must have an integer type (got float)"));
   EXPECT_THAT(ascii(kFace), HasSubstr("must have exactly one element \"vertex\" (got 0)"));
   EXPECT_THAT(ascii("element vertex 0\nproperty float x\n" + kFace), HasSubstr("properties x, y and z"));
   EXPECT_THAT(ascii(kVertex + kVertex), HasSubstr("must have exactly one element \"vertex\" (got 2)"));
@@ -171,7 +171,7 @@ TEST(Ply, ReportsPositionOfBodyErrors) {
   EXPECT_THAT(ascii(kFour + "3 0 1 -1\n"), HasSubstr("got -1"));
   EXPECT_THAT(ascii(kFour + "3 0 1 1.5\n"), HasSubstr("got 1.5"));
   EXPECT_THAT(ascii(kFour + "-3 0 1 1\n"),
-              HasSubstr("length of a list must be an integer from 0 to 4294967295 (got -3)"));
+              HasSubstr("list length must be an integer from 0 to 4294967295 (got -3)"));
   EXPECT_THAT(ascii(kFour + "4 0 1 2"), HasSubstr("got nothing"));
   std::string bytes = header("binary_little_endian",
                              "element vertex 1\nproperty float x\nproperty float y\n"

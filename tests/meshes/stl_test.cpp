@@ -43,7 +43,7 @@ TEST(Stl, AcceptsByteOrderMarkInBinaryTitle) {
   EXPECT_EQ(corners_of(read_mesh(binary_stl_of(cube(), "\xEF\xBB\xBF part"))), corners_of(cube()));
 }
 
-TEST(Stl, ReadsCapitalsSeveralSolidsAndAnyNames) {
+TEST(Stl, AcceptsUppercaseKeywordsMultipleSolidsAndArbitraryNames) {
   const std::string facet =
       "FACET NORMAL nan nan nan OUTER LOOP VERTEX 0 0 0 VERTEX 1 0 0 VERTEX 0 1 0 ENDLOOP ENDFACET\n";
   const TriangleMesh mesh =

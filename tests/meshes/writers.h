@@ -158,7 +158,7 @@ class Gltf {
     return add(floats, "VEC3", 5126);
   }
 
-  // Returns the document. `rest` has the members "nodes", "meshes" and so on.
+  // Returns the document as a .gltf file. `rest`: text of the members "nodes", "meshes" and others.
   std::string gltf(const std::string& rest) const {
     return json(rest, ",\"uri\":\"data:application/octet-stream;base64," + base64_of(binary_) + '"');
   }
@@ -188,7 +188,7 @@ class Gltf {
   int count_ = 0;
 };
 
-// Returns a mesh as accessors 0 (positions) and 1 (indices), referenced by node 0.
+// Returns a builder with the mesh as accessors 0 (positions) and 1 (indices), which kOneMesh refers to.
 inline Gltf gltf_of(const TriangleMesh& mesh) {
   Gltf gltf;
   gltf.positions(mesh.positions);

@@ -16,7 +16,7 @@ SamplePoint<double> draw(const Draws& draws, SampleSet set, int depth, int slot)
   return {static_cast<double>(point.u[0]), static_cast<double>(point.v[0])};
 }
 
-// Pixels in the overlap of two tiles have the same random numbers in both.
+// Pixels in the overlap of two tiles have the same random numbers in both tiles.
 TEST(Draws, DependsOnPixelNotTile) {
   const Draws whole(7, TileView{0, 0, kTileSide, kTileSide}, 3);
   const Draws beside(7, TileView{16, 8, kTileSide, kTileSide}, 3);

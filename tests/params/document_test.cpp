@@ -63,7 +63,7 @@ TEST(Canonical, RoundTripsDoubles) {
   }
 }
 
-TEST(Canonical, KeepsTextReadable) {
+TEST(Canonical, WritesUnescapedUtf8AndMinimalEscapes) {
   EXPECT_EQ(canonical(R"(["\u00e9\"\\\n\t\u0001\/\u0000 é"])"), R"(["é\"\\\n\t\u0001/\u0000 é"])");
 }
 

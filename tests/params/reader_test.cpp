@@ -293,7 +293,7 @@ TEST(Reader, ChecksSemanticsOnlyOfValidValues) {
   EXPECT_EQ(problems(R"({"camera": {"eye": [0,0,0], "look_at": "x"}})", read).size(), 1u);
 }
 
-TEST(Reader, KeepsPointerOfAnyValue) {
+TEST(Reader, ReportsFullPointerInsideAnyValue) {
   std::optional<Document> scene;
   read_text(R"({"scene": {"radius": "x", "center": [0,0,0]}})",
             [&](Params& p) { scene = p.any("scene", ""); });

@@ -113,7 +113,7 @@ TEST(PictureDecoder, StripsCommentsAndProfilesFromJpeg) {
   EXPECT_EQ(read_picture(described).rgb, read_picture(plain).rgb);
 }
 
-// A decoder without the Adobe segment would read red, green and blue as luminance and colour differences.
+// Without the Adobe segment, a decoder would read red, green and blue as luminance and colour differences.
 TEST(PictureDecoder, KeepsColourTransformOfJpeg) {
   std::string described = encode_jpeg(grey_image(16, 8));
   described.insert(2, jpeg_segment('\xee', "Adobe\0\x64\0\0\0\0\0"s));
@@ -136,7 +136,7 @@ TEST(PictureDecoder, LimitsExrHeader) {
   EXPECT_EQ(refusal(with(2, 1 << 20)), "header has more than 1,048,576 bytes (limit 1,048,576)");
   std::string deep = plain;
   deep[5] |= 0x8;
-  EXPECT_EQ(refusal(deep), "must be a flat image (got a deep one)");
+  EXPECT_EQ(refusal(deep), "must be a flat image (got a deep image)");
 }
 
 TEST(PictureDecoder, LimitsHdrHeader) {

@@ -33,7 +33,8 @@ std::vector<float> ramp(std::size_t count) {
   return values;
 }
 
-// Returns an HDR file of flat RGBE with 0.5, 1 and 4 in every texel. The header has `stated_height`.
+// Returns an HDR file of uncompressed RGBE texels with red 0.5, green 1 and blue 4. The header states the
+// height `stated_height`.
 std::string hdr(int width, int height, int stated_height) {
   std::string bytes = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y " + std::to_string(stated_height) + " +X " +
                       std::to_string(width) + "\n";
@@ -168,7 +169,7 @@ TEST(Pictures, ReportsInvalidTexels) {
   }
 }
 
-TEST(Pictures, RejectsOtherFiles) {
+TEST(Pictures, RejectsOtherFormatsAndBareSignatures) {
   for (const std::string& bytes :
        {std::string(), std::string("v 0 0 0\n"), std::string("GIF89a"), std::string("II*\0", 4),
         std::string("\x89PNG\r\n\x1a\n"), std::string("\xff\xd8\xff"), std::string("#?RGBE\n"),

@@ -89,7 +89,7 @@ TEST(RenderOptions, HasUniqueNamesAndHelp) {
   }
 }
 
-TEST(RenderOptions, UsesValidDefaultsForEmptyScene) {
+TEST(RenderOptions, UsesValidDefaultsForSceneWithoutSettings) {
   Json bare = scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]");
   for (const char* member : {"image", "render"}) bare.erase(member);
   bare["camera"].erase("fov_degrees");

@@ -13,7 +13,8 @@
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 
-// Tests the parts of a render that the plan skips, its reasons, and the counters that confirm them.
+// Tests which parts of a render the plan skips, the reasons that it states, and the ray counts that confirm
+// the omission.
 namespace orrery::test {
 namespace {
 
@@ -214,7 +215,7 @@ TEST(Plan, GivesReasonForEveryDecision) {
     }
 }
 
-TEST(Plan, FallsBackToSceneSettings) {
+TEST(Plan, UsesSceneSettingsUnlessRequestOverridesThem) {
   Json scene = scene_of_materials({kRough, kGlass});
   scene["image"] = {{"width", 123}, {"height", 45}};
   scene["render"] = {

@@ -17,7 +17,7 @@
 namespace orrery::test {
 namespace {
 
-constexpr double kMaxError = 5e-4;  // root mean square, without edges
+constexpr double kMaxError = 5e-4;  // root mean square of radiance, without edges
 constexpr float kEdge = 0.1f;       // radiance step between neighbours at an edge
 
 struct View {

@@ -62,7 +62,7 @@ TEST(Warnings, ReportsEnergyCreatingMaterials) {
   EXPECT_EQ(warned(scene), "");
 }
 
-// Light from a source without extent reaches the floor through or off a smooth ball with probability 0.
+// A path that leaves the floor through or off a smooth ball hits a source without extent with probability 0.
 TEST(Warnings, ReportsLightsUnreachableThroughSmoothSurfaces) {
   covers("light-53");
   const auto with = [](const char* light, const char* ball) {
@@ -178,7 +178,7 @@ TEST(Warnings, ReportsEmptyView) {
   EXPECT_EQ(warned(floor), "") << "a plane is infinite";
 }
 
-TEST(Warnings, FollowsInstances) {
+TEST(Warnings, ReportsEmptyViewAndEnclosedCameraForInstances) {
   Json scene = lit("");
   scene["models"]["ball"]["objects"] = Json::array({json(kBall)});
   scene["models"]["ball"]["objects"][0]["material"] = "white";

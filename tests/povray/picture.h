@@ -33,7 +33,7 @@ Samples render_shifted(const PreparedScene& scene, const Plan& plan, float dx, f
 // viewer.
 std::vector<bool> normals_facing_away(const PreparedScene& scene, const Plan& plan);
 
-// Returns the largest difference of a channel. Values are clamped to `brightest`.
+// Returns the largest absolute difference over the channels, after clamping the values to `brightest`.
 float difference(const Vec3f& a, const Vec3f& b, float brightest);
 
 struct Comparison {

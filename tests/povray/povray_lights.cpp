@@ -15,8 +15,8 @@ struct Fading {
 };
 
 // A POV-Ray light fades as 2 / (1 + (d / distance)^power), an Orrery light as 1 / (c0 + c1 d + c2 d^2). The
-// forms match if c1 or c2 is 0. Orrery limits attenuation to 1 and POV-Ray does not, so they agree only where
-// c0 + c1 d + c2 d^2 >= 1.
+// forms match if c1 or c2 is 0. Orrery limits attenuation to 1 and POV-Ray does not, so the two agree only
+// where c0 + c1 d + c2 d^2 >= 1.
 Fading fading_of(const Json& light) {
   const Vec3d c = vector_of(light, "attenuation", {1, 0, 0});
   if (c.y == 0 && c.z == 0) return {std::min(1.0, 1 / c.x), ""};

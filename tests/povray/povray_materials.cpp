@@ -8,7 +8,7 @@ namespace orrery::povray {
 namespace {
 
 // Returns a / b per channel, because POV-Ray supports only multiples of the pigment `b`. Throws
-// UnsupportedFeature if a channel of `b` is 0 and that of `a` is not.
+// UnsupportedFeature if a channel of `b` is 0 and the same channel of `a` is not.
 Vec3d ratio(const Vec3d& a, const Vec3d& b) {
   const auto one = [](double x, double of) {
     if (of == 0 && x != 0)
@@ -39,8 +39,8 @@ Material rough(const Json& m) {
   return {"pigment { rgb " + text(kd * cd) + " } finish { " + finish + " } ", false};
 }
 
-// Schlick's approximation corresponds to a POV-Ray reflection from F0 to 1 with falloff 5, the exponent of 1
-// - cos.
+// Schlick's approximation corresponds to a POV-Ray reflection from F0 to 1 with falloff 5, the exponent of (1
+// - cos).
 Material reflective(const Json& m) {
   if (m.value("fresnel", "schlick") != "schlick")
     throw UnsupportedFeature("cannot export metal: fresnel must be schlick");

@@ -61,9 +61,9 @@ const Case kCases[] = {
     {"orthographic", "tests/povray/scenes/orthographic.json"},
 };
 
-// A pixel is an edge if one of four samples around its centre differs from the sample at the centre. There, a
-// rounding error can move an outline, a reflection or a shadow across the centre. Smooth surfaces change much
-// less over this distance.
+// A pixel is an edge if one of four samples around its centre differs from the sample at the centre by more
+// than kEdgeContrast. At an edge, a rounding error can move an outline, a reflection or a shadow across the
+// centre. Smooth surfaces change much less over this distance.
 constexpr float kEdgeDistance = 0.03f;  // pixels
 constexpr float kEdgeContrast = 0.02f;
 

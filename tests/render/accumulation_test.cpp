@@ -54,7 +54,8 @@ struct Accumulator {
 };
 
 // Accumulates the maximum sample count of a request, with a value that has no finite binary fraction. Each
-// addition has a relative error of at most 2^-53, and 4096 additions one of at most 4096 * 2^-53.
+// addition has a relative error of at most 2^-53, and 4096 additions have a relative error of at most 4096 *
+// 2^-53.
 TEST(Accumulation, KeepsConstantAtMaximumSamples) {
   covers("light-10");
   Accumulator accumulator(0.1);
@@ -135,7 +136,8 @@ TEST(Stratification, ReducesVarianceAsPower3Over2AtEdges) {
 }
 
 // For smooth radiance, variance is proportional to n^-2 with one random point per cell. With scrambled nets
-// it is proportional to n^-3 log n (Owen, "Scrambled Net Variance for Integrals of Smooth Functions", 1997).
+// the variance is proportional to n^-3 log n (Owen, "Scrambled Net Variance for Integrals of Smooth
+// Functions", 1997).
 TEST(Stratification, ReducesVarianceFasterThanPower2IfSmooth) {
   covers("light-6");
   constexpr int kSide = 8;

@@ -12,7 +12,7 @@ namespace {
 using test::Json;
 using test::json;
 
-// Disables reflections.
+// Returns a request without reflections.
 RenderRequest flat() {
   RenderRequest r;
   r.technique = "whitted";

@@ -68,8 +68,8 @@ Json dots() {
   return dots;
 }
 
-// A budget for a smaller error never costs fewer rays. A budget that is reported as met is met, and any other
-// has a reason.
+// A budget for a smaller error never costs fewer rays. A budget that is reported as met is met, and every
+// missed budget has a reason.
 TEST(ErrorBudget, MeetsReportedError) {
   covers("certificate-29 certificate-38");
   for (const Json& json : {test::sample("paper"), test::sample("glass"), test::sample("material-metal"),
@@ -110,8 +110,8 @@ TEST(ErrorBudget, TracesFewExtraRays) {
 }
 
 // Passes end for all pixels at once, so features hit by few samples are not darkened. Ending pixels
-// individually would lose 84 % of their light. The error is met for at least 95 of 100 seeds.
-TEST(ErrorBudget, KeepsErrorOverSeeds) {
+// individually would lose 84 % of the light of these features. The error is met for at least 95 of 100 seeds.
+TEST(ErrorBudget, MeetsErrorWithoutBiasOverSeeds) {
   covers("light-48 certificate-25");
   Json path = dots();
   path["render"] = {{"technique", "path"}};
@@ -320,8 +320,8 @@ TEST(ErrorBudget, IsReproducedByReportedSettings) {
   }
 }
 
-// Clock that each tile advances. Tiles of the first two passes cost the same, and those of each later pass
-// twice as much as in the previous one. Costs vary by 30 %, and some tiles stall.
+// Clock that each tile advances. Tiles of the first two passes have the same mean cost. In each later pass, a
+// tile costs twice as much as in the previous pass. Costs vary by 30 %, and some tiles stall.
 struct FakeClock {
   double now_s = 0, tile_s = 0.001;
   double share_of_stalls = 0;
@@ -429,8 +429,8 @@ TEST(TimeBudget, FailsEarlyIfUnreachable) {
   EXPECT_TRUE(rendered(test::load(test::sample("paper")), r, in_time.control()).budget->met());
 }
 
-// If the first result omits too much light that the pilot missed, a second render traces weaker rays. If it
-// does not end in time, the first result is the image.
+// If the first result omits too much light that the pilot missed, a second render traces weaker rays. If the
+// second render does not end in time, the first result is the image.
 TEST(TimeBudget, RestoresPreviousResult) {
   const auto scene = test::load(
       test::scene_of("[{'type': 'sphere', 'center': [0.32, 0.42, 0], 'radius': 0.02, 'material': 'mirror'},"
@@ -452,7 +452,7 @@ TEST(TimeBudget, RestoresPreviousResult) {
 }
 
 // With both budgets, the render ends when it meets the first one.
-TEST(TimeBudget, EndsErrorBudgetInTime) {
+TEST(TimeBudget, EndsAtFirstMetBudget) {
   const auto scene = test::load(test::sample("paper"));
   RenderRequest r = with_error(96, 0.5, Space::display);
   r.seconds = 1000;

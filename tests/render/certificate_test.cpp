@@ -56,7 +56,7 @@ double median(std::vector<double> values) {
   return values.at(values.size() / 2);
 }
 
-// Compares a limited render with the full ray tree, whose own ledger is added to the bound.
+// Compares a limited render with the full ray tree, whose ledger is added to the bound.
 void expect_within_bounds(const Json& scene, const RenderRequest& cut, Tightness& tightness) {
   const auto loaded = test::load(scene);
   const Plan plan = make_plan(*loaded, cut);
@@ -118,8 +118,8 @@ TEST(RadianceRange, ContainsRadianceOfRandomScenes) {
   }
 }
 
-// The plum ball reflects .3 of the ambient light of .4. It reflects .3 of the light of 2, plus a highlight of
-// 2 times this light: .12 + 4.6.
+// The plum ball reflects .3 of the ambient light of .4. It reflects the light of 2 by a factor of .3, and by
+// a factor of 2 in the highlight. The sum is .12 + 4.6.
 TEST(RadianceRange, MatchesHandComputedPaperScene) {
   covers("certificate-6");
   const auto scene = test::load(test::sample("paper"));
@@ -477,7 +477,7 @@ TEST(Clamp, KeepsDirectLight) {
   }
 }
 
-// The ledger of passes is at least that of the whole render.
+// The summed ledger of the passes is at least the ledger of a render in one pass.
 TEST(Certificate, SumsPassLedgersForWholeRender) {
   const auto loaded = test::load(test::sample("material-refractive"));
   RenderRequest r = request(2);

@@ -50,7 +50,7 @@ TEST(Control, StopsRenderImmediately) {
   EXPECT_LT(tiles, 5 + shared_pool().threads()) << "new tiles began after the stop";
 }
 
-// Accelerator that forwards to another one and requests a stop at the third batch.
+// Accelerator that forwards to another accelerator and requests a stop at the third batch.
 class StopsAtThirdBatch final : public Accelerator<float> {
  public:
   explicit StopsAtThirdBatch(std::shared_ptr<const Accelerator<float>> behind) : behind_(std::move(behind)) {}

@@ -70,7 +70,7 @@ double bias_in_standard_errors(const Json& json, const RenderRequest& r, const R
   return mean / std::sqrt((squares / kSeeds - mean * mean) / (kSeeds - 1));
 }
 
-TEST(Convergence, IsUnbiasedInEveryUnbiasedMode) {
+TEST(Convergence, HasNoSignificantBiasInUnclampedModes) {
   covers("light-55");
   struct Mode {
     const char* name;

@@ -49,7 +49,8 @@ TEST(Coverage, MatchesAreaOfDisc) {
   EXPECT_NEAR(render(ball(20, orthographic(64)), request).sum(), expected, 0.5);
 }
 
-// The ball covers a fifth of a pixel at the corner of four pixels. One ray per pixel misses it, many do not.
+// A ball with a radius of a fifth of a pixel is at the corner of four pixels. With one ray per pixel, no ray
+// hits the ball. With many rays per pixel, some do.
 TEST(Coverage, ResolvesSubpixelBallsWithSamples) {
   covers("E7");
   RenderRequest request = size(16, 16);

@@ -56,8 +56,9 @@ double height(Filter filter, double x) {
   return 0;
 }
 
-// The edge of a half plane is the integral of the filter. It rings for filters with negative lobes.
-TEST(Filters, ShowsEdgeAsFilterIntegral) {
+// The radiance across the edge of a half plane is the integral of the filter. Filters with negative lobes
+// cause ringing.
+TEST(Filters, EdgeProfileMatchesFilterIntegral) {
   covers("light-46");
   Json scene = scene_of(
       "[{'type': 'rectangle', 'corner': [0.3, -100, 0], 'edge_u': [100, 0, 0], 'edge_v': [0, 200, 0], "
@@ -80,8 +81,8 @@ TEST(Filters, ShowsEdgeAsFilterIntegral) {
   }
 }
 
-// Passes, threads and scale do not change the image. A single sample of Whitted's technique is at the pixel
-// centre.
+// Neither the number of threads nor the scale of the scene changes the image. A single sample of Whitted's
+// technique is at the pixel centre, so the filter has no effect.
 TEST(Filters, IsIndependentOfThreadsAndScale) {
   const Json own = sample("cornell-box");
   for (const Filter filter : {Filter::blackman_harris, Filter::lanczos}) {

@@ -66,7 +66,8 @@ TEST(Forecast, PredictsRaysAndErrorOfFixedSamples) {
   }
 }
 
-// Doubling the time budget roughly doubles the samples. The clock of the test does not advance.
+// Each pass doubles the samples, so the forecast uses more than half of the time budget unless the sample
+// count reaches its maximum. The clock of the test does not advance.
 TEST(Forecast, FillsTimeBudget) {
   const auto scene = load(sample("cornell-box"));
   RenderRequest r = square();
@@ -121,7 +122,7 @@ TEST(Forecast, PredictsMissedBudget) {
   EXPECT_GT(*told.min_error, 1e-6);
 }
 
-// The pilot renders the whole image, or the image is smaller than a block.
+// Covers images that the pilot renders completely, and images smaller than a block.
 TEST(Forecast, SupportsSmallestImages) {
   for (const int side : {1, 3, 33}) {
     RenderRequest r = square();

@@ -24,7 +24,7 @@ std::vector<const char*> not_followed(const char* technique, const std::string& 
   return rendered(scene, r).certificate.not_followed;
 }
 
-TEST(Certificate, ListsUnfollowedLight) {
+TEST(Certificate, ListsLightThatTechniqueDoesNotFollow) {
   covers("certificate-21");
   constexpr const char* kPoint = "{'type': 'point', 'position': [0, 3, 0], 'intensity': [1, 1, 1]}";
   constexpr const char* kLamp = "{'type': 'sphere', 'center': [0, 3, 0], 'radius': 0.1, 'material': 'lamp'},";

@@ -13,7 +13,7 @@
 namespace orrery::test {
 namespace {
 
-// Returns a request for a small image, smaller with sanitizers.
+// Returns a request for a small image. The image is smaller if tests are reduced.
 RenderRequest small(int samples = 1) {
   RenderRequest request = reduced() ? size(64, 48) : size(160, 120);
   request.samples = samples;
@@ -107,7 +107,7 @@ TEST_P(EveryScene, IsScaleInvariant) {
 }
 
 // Float and double may differ at an edge, and curved mirrors multiply edges. In most scenes no pixel differs
-// by more than 1/512. With 820 mirrored balls, 40 of 19,200 do.
+// by more than 1/512. With 820 mirrored balls, 40 of 19,200 pixels differ by more.
 TEST_P(EveryScene, AgreesInFloatAndDouble) {
   const Picture single = render(scene_, in_float(small())), exact = render(scene_, in_double(small()));
   EXPECT_LE(differing_pixels(single, exact, 1.0 / 512), 160 * 120 / 200);
@@ -160,7 +160,7 @@ Json random_scene(std::uint64_t seed) {
                     {"ior", random.between(0.6, 2.5)},
                     {"fresnel", random.below(2) ? "exact" : "schlick"}};
   if (random.below(2)) materials["d"]["filter"] = color();
-  const int kinds = random.below(15) + 1;  // bit set of the used materials, of four
+  const int kinds = random.below(15) + 1;  // bit i is set if material i is used
   std::vector<std::string> used;
   for (int i = 0; i < 4; ++i)
     if (kinds >> i & 1) used.push_back(std::string(1, static_cast<char>('a' + i)));

@@ -33,7 +33,7 @@ Json moving_scene() {
                                     {'time': 4, 'scale': [2, 1, 1], 'degrees': 700}]}]})");
 }
 
-// Returns the same scene without motion, as it is at 2.5 s.
+// Returns the moving scene as it is at 2.5 s, without motion.
 Json standing_scene() {
   Json scene = moving_scene();
   Json& mesh = scene["objects"][1];
@@ -81,7 +81,7 @@ TEST(Motion, IsIndependentOfEarlierTimes) {
   }
 }
 
-TEST(Motion, StopsOutsideKeyframes) {
+TEST(Motion, HoldsFirstAndLastKeyframeOutsideMotion) {
   const auto scene = load(moving_scene());
   EXPECT_EQ(scene->motion.first, 0);
   EXPECT_EQ(scene->motion.last, 4);

@@ -6,7 +6,7 @@
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 
-// Tests symmetries of path tracing. They need no reference values.
+// Tests symmetries of path tracing, which need no reference values.
 namespace orrery::test {
 namespace {
 
@@ -68,8 +68,8 @@ Blocks blocks_of(const Json& scene, std::uint64_t first_seed, bool from_the_righ
   return blocks;
 }
 
-// Expects differences below 6 standard errors (Welch). Their mean square must be near (n - 1) / (n - 3), the
-// expectation for 2 (n - 1) degrees of freedom.
+// Expects differences below 6 standard errors (Welch). The mean square of the differences in standard errors
+// must be near (n - 1) / (n - 3), the expectation for 2 (n - 1) degrees of freedom.
 void expect_equal(const Blocks& a, const Blocks& b) {
   double squares = 0;
   for (std::size_t i = 0; i < a.mean.size(); ++i) {

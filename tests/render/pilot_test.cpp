@@ -30,8 +30,8 @@ Traced traced(const Json& json, int side) {
   return {trace_pilot(prepared, plan, 2, shared_pool(), {}).stats, rendered(scene, request(side)).stats};
 }
 
-// For random scenes, the pilot's ray count predicts that of the image within 10 % in at least 95 of 100
-// scenes.
+// For random scenes, the pilot's ray count predicts the ray count of the image within 10 % in at least 95 of
+// 100 scenes.
 TEST(Pilot, PredictsRayCountOfImage) {
   covers("certificate-33");
   constexpr int kSide = 512;

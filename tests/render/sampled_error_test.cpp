@@ -50,8 +50,8 @@ TEST(SampledError, MatchesErrorOfImage) {
   }
 }
 
-// In random scenes, the estimate is compared with images of other seeds. It may be up to 1.6 times too large
-// at edges, and up to 4 times in smooth images.
+// In random scenes, the estimate is compared with images of other seeds. The estimate may be up to 1.6 times
+// too large at edges, and up to 4 times in smooth images.
 TEST(SampledError, MatchesErrorOverOtherSeeds) {
   covers("certificate-27");
   Random random(27);

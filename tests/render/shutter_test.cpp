@@ -152,7 +152,7 @@ TEST(Shutter, AveragesLightOfMovingLamp) {
   EXPECT_NEAR(mean / expected, 1, 0.01);
 }
 
-// A ball moves between a directional light and the floor. Its shadow is that of a moving disk.
+// A ball moves between a directional light and the floor. The shadow equals the shadow of a moving disk.
 TEST(Shutter, CastsShadowsAtTimeOfRay) {
   covers("light-45");
   const Json ball = {{"type", "sphere"}, {"material", "white"}, {"center", {0, 0, 5}}, {"radius", 4}};
@@ -189,7 +189,7 @@ Json spinning() {
 }
 
 // The mean of images at many instants equals one image with an open shutter.
-TEST(Shutter, AveragesInstants) {
+TEST(Shutter, MatchesMeanOfInstants) {
   const auto scene = load(spinning());
   constexpr int kInstants = 64;
   std::vector<double> mean(48 * 36, 0.0);

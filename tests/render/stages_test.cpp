@@ -63,7 +63,7 @@ TEST(OcclusionSamples, LimitsSampleCount) {
 }
 
 // For a floor seen from above, the upper and lower half of the image give equal numbers of samples. Half of
-// the early samples are dropped.
+// the samples kept early are dropped later, which must not favour one half of the image.
 TEST(OcclusionSamples, CoversImageEvenly) {
   const Json floor = scene_of(
       R"([{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]},

@@ -25,7 +25,7 @@ bool give_way_until(const std::atomic<bool>& done, TimeSlice& turn) {
   return done;
 }
 
-TEST(WorkerPool, RunsEveryStepOnceWithOwnWorker) {
+TEST(WorkerPool, RunsEveryStepOnceWithExclusiveWorker) {
   WorkerPool pool(3);
   std::mutex mutex;
   std::multiset<int> steps, busy;
@@ -46,7 +46,7 @@ TEST(WorkerPool, RunsEveryStepOnceWithOwnWorker) {
   EXPECT_EQ(steps.size(), 200u);
 }
 
-TEST(WorkerPool, RunsOthersWhileLongStepYields) {
+TEST(WorkerPool, RunsOtherLoopsWhileLongStepYields) {
   for (const int threads : {1, 2}) {
     WorkerPool pool(threads);
     std::atomic<int> begun = 0;
@@ -66,8 +66,8 @@ TEST(WorkerPool, RunsOthersWhileLongStepYields) {
   }
 }
 
-// Only the long step's own end frees its thread.
-TEST(WorkerPool, RunsOthersDuringNonYieldingStep) {
+// A step that does not yield keeps its thread until the step ends.
+TEST(WorkerPool, RunsLoopsAndTasksDuringNonYieldingStep) {
   for (const int threads : {1, 2}) {
     WorkerPool pool(threads);
     std::atomic<int> begun = 0;

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds another revision in build-revision/ and renders every sample scene with both: in float and double,
-# with every accelerator, as PNG and EXR, and some orbit frames. Reports which differ in a byte.
+# with every accelerator, as PNG and EXR, and some orbit frames. Reports the images that differ in a byte.
 #   tests/revisions/compare.sh REVISION [--width PIXELS]       status 0: all are equal
 # The checkout and the build of the revision remain for the next run.
 set -euo pipefail

@@ -56,8 +56,8 @@ const orbitHttp = (frames) => async (build) => {
   }
 };
 
-// Times one Embree comparison. One process per build keeps the mesh. Requires both revisions' build/bench to
-// have the subject.
+// Measures CPU seconds of one subject of the Embree comparison. One process per build keeps the mesh loaded.
+// Requires that both revisions' build/bench have the subject.
 function embreeRow(subject, place, triangles, kind) {
   const sides = new Map();
   return {

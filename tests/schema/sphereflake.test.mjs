@@ -1,5 +1,5 @@
-// Checks that the sample sphereflakes equal the output of their generator and have the structure that it
-// describes.
+// Checks that the sample sphereflakes equal the output of their generator. Every sphere except for the first
+// must touch its parent, and no spheres may overlap.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";
@@ -27,5 +27,5 @@ for (const [level, count] of [
       assert.ok(gap > -1e-6, `spheres overlap by ${-gap}`);
       if (gap < 1e-6 && a.radius !== b.radius) touching += 1;
     }
-  assert.ok(touching >= count - 1, "every sphere but the first touches the one it sits on");
+  assert.ok(touching >= count - 1, "every sphere but the first touches its parent");
 }

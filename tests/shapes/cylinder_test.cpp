@@ -74,7 +74,7 @@ TEST(Cylinder, HitsCapsAlongSlantedAxis) {
   }
 }
 
-// A cap centre at the origin must not select the infinite cylinder, a separate form of input.
+// A cap centre at the origin must not select the infinite cylinder, which has different keys in a scene.
 TEST(Cylinder, TreatsOriginAsOrdinaryCapCentre) {
   covers("A9");
   const Ray<double> above{{-5, 0, 100}, {1, 0, 0}};
@@ -112,7 +112,8 @@ TEST(Cylinder, DoesNotLeakAtRim) {
   EXPECT_EQ(odd, 0);
 }
 
-// For a ray in the plane of a cap, the distance to that cap is 0 / 0. It must not affect the hit on the wall.
+// For a ray in the plane of a cap, the distance to the cap is 0 / 0. This NaN must not affect the hit on the
+// wall.
 TEST(Cylinder, HitsWallInPlaneOfCap) {
   const auto check = [](const auto& capped, auto number) {
     using T = decltype(number);

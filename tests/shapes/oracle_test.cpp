@@ -20,8 +20,8 @@ constexpr int kShift = 8;
 template <class T>
 constexpr long double kUlp = std::numeric_limits<T>::epsilon();
 
-// Adds the ray and twelve copies. The copies have the origin moved along an axis, or the direction turned
-// towards one, both in either sense.
+// Adds the ray and twelve copies. In a copy, the origin is moved along an axis or the direction is turned
+// towards an axis, in either sense.
 constexpr std::size_t kCopies = 13;
 void add_copies(const Ray<long double>& ray, long double shift, long double turn, Rays<long double>& rays) {
   rays.push_back(ray);

@@ -53,7 +53,7 @@ TEST_P(ShapeParameters, GivesUnitTangentsInSurface) {
   }
 }
 
-// Between two nearby hits, the one farther along the tangent has the larger texture coordinate s.
+// Between two nearby hits, the hit farther along the tangent has the larger texture coordinate s.
 TEST_P(ShapeParameters, IncreasesSAlongTangent) {
   for (const Json& object : shape_samples(GetParam())) {
     Rays<double> rays;

@@ -91,7 +91,7 @@ TEST_P(RayContract, IsIndependentOfLanes) {
   check_lanes<double>();
 }
 
-// For three copies of an object, the lowest number wins in any order of the tests.
+// For three copies of an object, the lowest primitive number wins in any order of the intersection tests.
 TEST_P(RayContract, BreaksTiesByLowestNumber) {
   for (const Json& object : shape_samples(GetParam())) {
     const Target<double> one(scene_with(object));

@@ -33,7 +33,7 @@ class Leaver {
     spots_ = shape_.surfaces(rays_, hits_);
   }
 
-  // Sends one ray outward from each hit and one into the shape. Half of them are nearly tangential.
+  // Sends two rays from each hit, one outward and one into the shape. Half of the rays are nearly tangential.
   void leave(Random& random, Tally& tally) const {
     Rays<T> up, down;
     for (std::size_t i = 0; i < rays_.size(); ++i) {

@@ -39,7 +39,7 @@ TEST(Sphere, IsAccurateFromMillionRadiiAway) {
 }
 
 // Uses random directions, because rays along an axis have smaller rounding errors.
-TEST(Sphere, IsAccurateFromAfarInAnyDirection) {
+TEST(Sphere, DecidesHitsFromAfarInAnyDirection) {
   covers("A1");
   const auto shape = sphere<double>(Vec3d(), 1);
   Random random(2);

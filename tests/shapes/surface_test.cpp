@@ -115,7 +115,8 @@ TEST_P(ShapeSurface, GivesPerpendicularNormals) {
   });
 }
 
-// An outward ray from a closed convex shape misses it, and a ray from just inside hits the surface again.
+// An outward ray from a closed convex shape misses the shape, and a ray from just inside hits the surface
+// again.
 TEST_P(ShapeSurface, OrientsNormalsOfClosedShapesOutward) {
   covers("A38");
   for_each_placed_shape<double>(1000, [](const PlacedShape<double>& s, const Placement& placement) {

@@ -71,7 +71,7 @@ TEST(Triangle, RejectsOrMissesZeroArea) {
                     " [-1113.45459, -79.2090149, -56.2431908]]"),
             "/objects/0/vertices");
 
-  // A mesh may contain degenerate triangles. A distant valid one keeps this mesh from being empty.
+  // A mesh may contain degenerate triangles. A distant valid triangle keeps this mesh from being empty.
   const auto mesh = Target<double>::of_objects(
       R"([{'type': 'mesh', 'indices': [[0, 1, 2], [0, 0, 1], [3, 4, 5]],
            'positions': [[-1113.45459, -79.049614, -56.2431908], [-1113.45459, -87.0922699, -56.2431908],
@@ -99,8 +99,8 @@ TEST(Triangle, RejectsOrMissesZeroArea) {
   }
 }
 
-// Returns the hits of rays that leave a strip of two triangles toward its front. The strip is far longer than
-// wide, so that distances along it are ill-conditioned.
+// Returns the number of rays that hit the strip of two triangles from whose front they start. The strip is
+// far longer than wide, so that distances along the strip are ill-conditioned.
 template <class T>
 int hits_of_leaving_a_strip(double length, double width) {
   const double l = length / 2, w = width / 2;

@@ -95,7 +95,7 @@ TEST(StabilityChart, FitsTitlesAndLegends) {
   }
 }
 
-// Bar lengths are proportional to time, 350 for the slowest method of all groups.
+// Bar lengths are proportional to time. The slowest method of all groups has the length 350.
 TEST(SpeedChart, DrawsBarForEachMethod) {
   const std::vector<SpeedGroup> groups{
       {"Number type", {{"double", 1, "reference"}, {"float", 0.5, "RMS 1e-4"}}},

@@ -62,9 +62,9 @@ TEST(ParetoFront, RaisesErrorsToFloor) {
 TEST(ParetoFront, LeavesIndistinguishablePointsUndecided) {
   const Point quick = point({{1, 0.1}, {1.01, 0.1}, {0.99, 0.1}});
   EXPECT_THAT(front_of({quick, point({{2, 0.12}, {2.1, 0.13}, {1.9, 0.12}})}), ElementsAre(front, dominated));
-  // Possibly more accurate, possibly not.
+  // The second point may be more accurate or less accurate.
   EXPECT_THAT(front_of({quick, point({{2, 0.12}, {2.1, 0.07}, {1.9, 0.15}})}), ElementsAre(front, undecided));
-  // Less accurate, possibly faster.
+  // The second point is less accurate, but may be faster.
   EXPECT_THAT(front_of({quick, point({{0.5, 0.2}, {2.9, 0.2}, {1.1, 0.2}})}), ElementsAre(front, undecided));
   EXPECT_THAT(front_of({point(1, 0.1), point(1, 0.1)}), ElementsAre(undecided, undecided));
 }
@@ -163,7 +163,7 @@ TEST(Chart, RecommendsCheapestPointBelowEachError) {
   std::vector<std::pair<double, std::size_t>> pairs;
   for (const Recommendation& r : found) pairs.emplace_back(r.error, r.point);
   EXPECT_THAT(pairs, ElementsAre(std::pair(0.05, 1), std::pair(0.01, 2), std::pair(0.0001, 3)));
-  all.points[1] = point({{8, 0.02}, {8, 0.2}, {8, 0.02}}, 4);  // its interval extends far beyond 0.05
+  all.points[1] = point({{8, 0.02}, {8, 0.2}, {8, 0.02}}, 4);  // the interval extends far beyond 0.05
   EXPECT_EQ(recommendations(all).front().point, 2U);
 }
 

@@ -289,7 +289,7 @@ TEST(Study, CoversErrorsOfOtherSeedsInIntervals) {
   EXPECT_GE(inside * 30, points * 28);
 }
 
-TEST(Study, SortsFrontWithoutDominatedMembers) {
+TEST(Study, SortsFrontByCostWithoutDominatedPoints) {
   const Chart chart = chart_of(sample("glass"), size(32, 32), {.samples = 16, .rounds = 4});
   const auto front = chart.front();
   ASSERT_FALSE(front.empty());

@@ -8,7 +8,7 @@
 #include "core/base/hash.h"
 #include "tests/support/structures.h"
 
-// Compares the results of one registered structure with those of the list.
+// Compares the results of one registered structure with the results of the list.
 namespace orrery::test {
 
 // Results of a structure: closest hits, and occlusion up to each distance of `reaches`.

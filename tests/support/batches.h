@@ -9,7 +9,7 @@
 // Conversion of ray lists to batches.
 namespace orrery::test {
 
-// Fills a batch with rays and its remaining elements with inactive rays. REQUIRES: 1 to kBatch rays.
+// Fills a batch with rays. The remaining elements become inactive. REQUIRES: 1 to kBatch rays.
 template <class T>
 void fill_batch(std::span<const Ray<T>> rays, T t_max, RayBatch<T>& batch) {
   batch.count = static_cast<int>(rays.size());

@@ -14,7 +14,7 @@ inline bool exhaustive() {
   return set && std::string_view(set) == "yes";
 }
 
-// Returns true if tests use fewer pixels or rays. Sanitizers find no more errors with many.
+// Returns true if tests use fewer pixels or rays. Sanitizers find no more errors with more pixels or rays.
 inline bool reduced() { return kSanitized || !exhaustive(); }
 
 }  // namespace orrery::test

@@ -10,7 +10,7 @@ namespace orrery::test {
 template <class T>
 struct IncidentLight {
   Vec3<T> direction;  // toward the light
-  T t_max;            // metres to the light, infinite if distant, -1 if none arrives
+  T t_max;            // metres to the light, infinite if distant, -1 if no light arrives
   Vec3<T> incident;
 };
 

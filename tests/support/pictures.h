@@ -28,7 +28,7 @@ Picture render(const std::shared_ptr<const Scene>& scene, const RenderRequest& r
 // Renders a plan of the scene on the shared pool. The film is linear, unless a budget requires sums.
 RenderResult rendered(const std::shared_ptr<const Scene>& scene, const RenderRequest& request = {},
                       const RenderControl& control = {});
-// Returns the linear values of all pixels and channels. REQUIRES: those of Film::image(linear32).
+// Returns the linear values of all pixels and channels. REQUIRES: as for Film::image(linear32).
 std::vector<double> linear_values(const Film& film);
 // Returns the sRGB-encoded values, not rounded to 8 bits.
 std::vector<double> shown(std::vector<double> linear);

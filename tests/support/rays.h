@@ -61,7 +61,7 @@ class Target {
   ShapeTraits traits(int primitive) const;
   Boundsd bounds(int primitive) const;
 
-  // Returns the closest hit of each ray with all primitives, or with those of `only`.
+  // Returns the closest hit of each ray with all primitives, or only with the primitives in `only`.
   std::vector<Hit<T>> closest(std::span<const Ray<T>> rays) const;
   std::vector<Hit<T>> closest(std::span<const Ray<T>> rays, std::span<const int> only) const;
   Hit<T> closest(const Ray<T>& ray) const { return closest(std::span(&ray, 1)).front(); }

@@ -20,7 +20,7 @@ Json json(std::string_view text);
 // 7386) and may add lights, materials or another camera. Objects without a material get "white", which is
 // rough with kd 1 and ka 1.
 Json scene_with(const Json& objects, const Json& patch = Json::object());
-Json scene_of(std::string_view objects, std::string_view patch = "{}");  // the same from snippets
+Json scene_of(std::string_view objects, std::string_view patch = "{}");  // scene_with() for JSON snippets
 
 std::shared_ptr<const Scene> load(const Json& scene);
 

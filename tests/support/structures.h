@@ -20,8 +20,7 @@ template <class T>
 class Structure {
  public:
   Structure(const Json& scene, const std::string& accelerator, const Stage<T>& stage = {});
-  // Builds the structure over the scene at `time`. If `before` is given and its type supports it, refits that
-  // structure.
+  // Builds the structure over the scene at `time`, or refits `before` if possible.
   Structure(const std::shared_ptr<const Scene>& scene, const std::string& accelerator, double time,
             const Structure* before = nullptr);
 

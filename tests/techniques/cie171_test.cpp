@@ -114,8 +114,8 @@ TEST(Cie171, MatchesBrightFloorBehindScreens) {
                 2 * (parallel(1.5, 2, 3) + parallel(2.5, 2, 3)) - hidden, 256);
 }
 
-// 5.8: in a closed room of any shape and reflectance rho, the flux after k reflections is rho^k times that of
-// the lamp.
+// 5.8: in a closed room of any shape and reflectance rho, the flux after k reflections is rho^k times the
+// flux of the lamp.
 TEST(Cie171, ConservesLightInClosedRoom) {
   covers("light-40");
   constexpr double kReflectance = 0.7, kSide = 4;

@@ -143,9 +143,9 @@ std::vector<Bounce> by_bounce(int most, int side, int seeds) {
   return bounces;
 }
 
-// Compares fractions of the variance of single samples with those of an independent path tracer without
-// roulette. Direct light has 8 %, one bounce 49 to 58 %, two bounces 21 to 26 % and three 9 to 13 %. Roulette
-// shifts a few percent to longer paths, and edges in large pixels shift a few to direct light.
+// Compares fractions of the variance of single samples with the fractions in an independent path tracer
+// without roulette. Direct light has 8 %, one bounce 49 to 58 %, two bounces 21 to 26 % and three 9 to 13 %.
+// Roulette shifts a few percent to longer paths, and edges in large pixels shift a few to direct light.
 TEST(CornellBox, MatchesVarianceByBounce) {
   covers("light-37");
   const std::vector<Bounce> bounces = by_bounce(8, 128, 6);

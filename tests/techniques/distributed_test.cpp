@@ -140,7 +140,7 @@ INSTANTIATE_TEST_SUITE_P(Floors, SoftShadow,
 class DiffuseRoom : public testing::TestWithParam<const char*> {};
 
 // Walls emit 1, reflect half of the light, and receive ambient light. At depth 1 and more, direct and ambient
-// light are added to the emission. At depth 0 only ambient light is.
+// light are added to the emission. At depth 0, only ambient light is added.
 TEST_P(DiffuseRoom, ShowsOnlyDirectAndAmbientLight) {
   covers("light-11");
   Json room = scene_of_materials(GetParam(), {}, "{'ambient': [0.3, 0.3, 0.3]}");

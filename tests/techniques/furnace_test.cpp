@@ -54,7 +54,7 @@ double trace_paths(const Json& scene, const Ray<double>& ray, int max_depth, int
   return reflected / (batches * double{kBatch});
 }
 
-// Number of rays after the camera ray, at most `most`. The first ray is always traced, and each later one
+// Number of rays after the camera ray, at most `most`. The first ray is always traced, and each later ray
 // with probability rho. Mean and variance follow from P(N >= k) = rho^(k-1).
 struct Survivors {
   double mean = 0, variance = 0;
@@ -69,9 +69,9 @@ struct Survivors {
 };
 
 // Walls emit 1, reflect rho, and are found only by BSDF sampling. From the second vertex on, a path of
-// throughput beta = rho^2 survives with probability sqrt(beta) = rho. Its throughput is then rho again. Each
-// later ray adds rho, so the radiance of N rays is 1 + rho N. Without a depth limit its mean is 1 / (1 -
-// rho), and its variance rho^3 / (1 - rho)^2.
+// throughput beta = rho^2 survives with probability sqrt(beta) = rho. The throughput of surviving paths is
+// rho again. Each later ray adds rho, so the radiance of N rays is 1 + rho N. Without a depth limit, the mean
+// of the radiance is 1 / (1 - rho), and the variance is rho^3 / (1 - rho)^2.
 TEST(ClosedRoom, MatchesRouletteMeanVarianceAndRayCount) {
   covers("R2 light-12");
   constexpr int kBatches = 98, kDepth = 32;
@@ -93,8 +93,9 @@ TEST(ClosedRoom, MatchesRouletteMeanVarianceAndRayCount) {
   }
 }
 
-// The ledger contains the throughput of paths that reach depth D. Each has throughput rho, and the mean over
-// all paths is rho^D. The omitted continuation would have found rho / (1 - rho) per unit of throughput.
+// The ledger contains the throughput of paths that reach depth D. Each of these paths has throughput rho, and
+// the mean over all paths is rho^D. The omitted continuation would have found rho / (1 - rho) per unit of
+// throughput.
 TEST(ClosedRoom, RecordsCutThroughputInLedger) {
   covers("light-38");
   for (const double rho : {0.5, 0.8})
@@ -144,8 +145,8 @@ TEST(ClosedRoom, MatchesExchangeBetweenDomeAndFloor) {
 }
 
 // A disk lamp replaces a tenth of the area of a sphere. From each point of the wall, the form factor of the
-// lamp is 0.1 and that of the wall 0.9. From the lamp only the wall is visible. The radiance after each
-// reflection is wall' = rho (0.9 wall + 0.1 lamp), lamp' = rho wall.
+// lamp is 0.1, and the form factor of the wall is 0.9. From the lamp only the wall is visible. The radiance
+// after each reflection is wall' = rho (0.9 wall + 0.1 lamp), lamp' = rho wall.
 TEST(ClosedRoom, MatchesEachReflectionInSphere) {
   covers("light-14");
   const Json room = scene_of(

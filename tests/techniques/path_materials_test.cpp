@@ -79,7 +79,7 @@ struct Lit {
 class LampIllumination : public testing::TestWithParam<Lit> {};
 
 // Compares the radiance at a point below a square lamp with the integral of the evaluated material over the
-// lamp. Both MIS and BSDF sampling alone must agree with it.
+// lamp. Both MIS and BSDF sampling alone must agree with the integral.
 TEST_P(LampIllumination, MatchesIntegralOverLamp) {
   covers("light-22");
   const auto& [name, text, height] = GetParam();
@@ -162,7 +162,7 @@ double lit_by(const Sees& sees) {
   return found / kSteps / kSteps;
 }
 
-// Instances transform a ball into an ellipsoid and a square into a parallelogram. The light must be that of
+// Instances transform a ball into an ellipsoid and a square into a parallelogram. The floor must be lit as by
 // the transformed shapes.
 TEST(PathMaterials, TransformsLampsByInstances) {
   const Vec3d centre(0.3, 1, 0), radii(0.8, 0.2, 0.4);
@@ -198,9 +198,9 @@ TEST(PathMaterials, TransformsLampsByInstances) {
 }
 
 // Stripes of chalk and of dark polished plastic are below a ceiling lit by a spot light. Samples of the coat
-// are mirrored, and those of chalk never are. Path reuse must weight a shared sample by the densities of all
-// lobes, not only by that of the lobe that generated it. The plastic is too dark to offset excess light on
-// the chalk.
+// are mirrored, and samples of the chalk never are. Path reuse must weight a shared sample by the densities
+// of all lobes, not only by the density of the lobe that generated the sample. The plastic is too dark to
+// offset excess light on the chalk.
 TEST(PathMaterials, WeightsSharedSamplesThroughMirrors) {
   covers("light-9");
   Json scene = scene_of("[{'type': 'plane', 'point': [0, 2, 0], 'normal': [0, -1, 0], 'material': 'chalk'}]",

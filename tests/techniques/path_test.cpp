@@ -45,8 +45,8 @@ INSTANTIATE_TEST_SUITE_P(
                     "[{'type': 'cylinder', 'base': [0.3, -2, 1], 'top': [-0.2, 1, -2], 'radius': 3}]",
                     "[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 2}]"));
 
-// A unit square at different heights above a point. `sd` is the relative standard deviation of one sample by
-// solid angle.
+// Places a unit square at different heights above a point. `sd` is the relative standard deviation of one
+// sample by solid angle.
 TEST(Path, MatchesIrradianceOfSquare) {
   covers("R9 light-17 light-19");
   struct Case {
@@ -142,8 +142,8 @@ TEST(Path, AvoidsSelfLightingOfConvexLamps) {
   }
 }
 
-// An emitter that encloses all other objects is not sampled, because every point sees it from inside. The
-// samples are used for other lamps.
+// An emitter that encloses all other objects is not sampled, because every point sees it from inside. Light
+// samples are used for other lamps instead.
 TEST(Path, SkipsLightSamplingOfEnclosingLamps) {
   const auto is_drawn_from = [](std::string_view objects) {
     const Json scene =
@@ -162,7 +162,7 @@ TEST(Path, SkipsLightSamplingOfEnclosingLamps) {
   }
 }
 
-// Compares a square with a mesh of 100,352 triangles. Each vertex of a path samples one of them.
+// Compares a square with a mesh of 100,352 triangles. Each vertex of a path samples one triangle.
 TEST(Path, MatchesSingleEmitterWithManyTriangles) {
   constexpr int kSide = 224;
   Json positions = Json::array(), indices = Json::array();

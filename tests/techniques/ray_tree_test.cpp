@@ -66,7 +66,7 @@ TEST(DepthLimit, RecordsRemainingLightOfFacingMirrors) {
 
 // A room has glass walls that reflect `albedo` at normal incidence, under a sky of 1 / (1 - albedo). Each
 // wall transmits radiance 1 into the room and reflects `albedo` of the light inside. After n walls, the
-// radiance of a ray is (1 - albedo^n) / (1 - albedo). With the ledger it is 1 / (1 - albedo).
+// radiance of a ray is (1 - albedo^n) / (1 - albedo). Together with the ledger, the sum is 1 / (1 - albedo).
 TEST(ClosedRoom, SumsGeometricSeriesForRefractiveWalls) {
   covers("R2");
   const auto seen = [](double albedo, int walls) {
@@ -128,7 +128,7 @@ TEST(Threshold, IsDisabledByDefault) {
   const TraceOutput without = Tracing(slabs(1, .9), limits(32)).trace(kDown);
   EXPECT_LE(std::abs(without.radiance.x - exact), without.cut);
   EXPECT_LE(without.cut, .1 * std::pow(.9, 30)) << "light left in the slab after 30 reflections";
-  // After six mirrors of .9, the ray reaches ambient light, for a radiance of .9^6.
+  // Ambient light replaces the ray reflected by the sixth mirror of .9, which gives a radiance of .9^6.
   EXPECT_NEAR(Tracing(mirrors(.9, 1), limits(5)).trace(kUpright()).radiance.x, std::pow(.9, 6), 1e-4);
 }
 
@@ -201,9 +201,9 @@ TEST(RayTree, TestsEveryObjectPerRayWithList) {
   }
 }
 
-// The number of rays is (m + 1) d N M for N x M pixels, where each of the d rays of a pixel traces m shadow
-// rays from a surface with direct light. Rough surfaces end the path and mirrors have no direct light, so d
-// is 1 without mirrors. Behind k mirrors, a pixel takes k + 1 rays and m shadow rays.
+// The number of rays for N x M pixels is (m + 1) d N M if each pixel takes d rays and each of these rays
+// takes m shadow rays. Rough surfaces end the path, so d is 1 without mirrors. Mirrors have no direct light
+// and take no shadow rays. Behind k mirrors, a pixel takes k + 1 rays and m shadow rays.
 TEST(RayTree, MatchesRayCountFormula) {
   const auto counts = [](int mirrors_on_the_way, int lights) {
     Json scene = json(
@@ -252,7 +252,7 @@ TEST(RayTree, MatchesRayCountFormula) {
   }
 }
 
-// Every bounce takes one ray and one test per primitive, however small the weight.
+// Every bounce takes one ray, however small its weight. With the list, each ray takes one test per primitive.
 TEST(RayTree, CostsSameForWeakAndStrongRays) {
   covers("A35");
   for (const double reflectance : {.5, 1e-4}) {  // 1e-4 ^ 33 is below the smallest float

@@ -21,7 +21,7 @@ struct Named {
   const char* name;
   const char* text;
 };
-// Lamps, partly in the mirrored direction of the viewer.
+// Lamps around the mirror direction of the viewer.
 const std::vector<Named> kLamps = {
     {"Rectangle",
      "{'type': 'rectangle', 'corner': [-2, 1.5, -0.8], 'edge_u': [1.5, 0, 0], 'edge_v': [0, 0.3, 1.6]}"},
@@ -174,8 +174,8 @@ Estimate by_both(const Json& lamp, const Json& material, int samples) {
 
 class SamplingStrategies : public testing::TestWithParam<Named> {};
 
-// All three estimates agree. MIS is as good as the better strategy, unless light sampling alone has almost no
-// noise. In that case BSDF samples raise the deviation by up to a quarter.
+// All three estimates agree. MIS has at most the deviation of the better strategy, unless light sampling
+// alone has almost no noise. In that case, BSDF samples raise the deviation by up to a quarter.
 TEST_P(SamplingStrategies, AgreeForEveryMaterial) {
   covers("light-22");
   const Json lamp = json(GetParam().text);

@@ -128,7 +128,7 @@ TEST(Furnace, HidesGlassUnderUniformSky) {
 }
 
 // With limited depth, the mean radiance over the disc of a ball is 7.3 % too low without internal
-// reflections, 1.15 % with one and .081 % with four. The ledger equals this error.
+// reflections, 1.15 % with one reflection and .081 % with four reflections. The ledger equals this error.
 TEST(Furnace, MatchesErrorOfLimitedDepth) {
   covers("D11");
   const Json scene = scene_of(

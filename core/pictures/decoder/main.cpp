@@ -1,5 +1,5 @@
-// Program orrery-decode: decodes one image file in a separate process with limited memory and CPU time. A
-// file that exploits or crashes a library cannot harm the calling process.
+// Program orrery-decode: decodes one image file in a separate process with limited memory and CPU time. If a
+// file crashes a library, only this process ends.
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -43,7 +43,8 @@ void write_all(std::span<const std::byte> bytes) {
   std::_Exit(0);
 }
 
-// Reports an error of a library: the first line of its text, without the names of libraries and of the input.
+// Reports an error of a library and ends the process. The report is the first line of the error text, without
+// the names of libraries and of the input.
 [[noreturn]] void fail_damaged(std::string text) {
   constexpr std::string_view kNames[] = {"PNG read error: ",
                                          "JPEG error: ",
@@ -107,8 +108,8 @@ std::vector<float> light_of_codes() {
   return light;
 }
 
-// Reads the rows from `begin` to `end` without conversion. (OpenImageIO's function for several rows always
-// allocates 64 MiB.)
+// Reads rows [begin, end) without conversion. Does not use OpenImageIO's function for several rows, because
+// it always allocates 64 MiB.
 template <class Sample>
 void read_rows(OIIO::ImageInput& input, int begin, int end, std::vector<Sample>& samples) {
   const OIIO::ImageSpec& spec = input.spec();
@@ -126,8 +127,8 @@ void read_rows(OIIO::ImageInput& input, int begin, int end, std::vector<Sample>&
   if (!read) fail_damaged(input.geterror());
 }
 
-// Writes red, green and blue of each texel, converted by `light`. Grey is written three times. Alpha is
-// dropped.
+// Writes the header, then red, green and blue of each texel, converted by `light`. Grey is written three
+// times. Alpha is dropped.
 template <class Sample>
 void decode(OIIO::ImageInput& input, const auto& light) {
   const OIIO::ImageSpec& spec = input.spec();
@@ -159,12 +160,12 @@ void run(const char* plugin, std::uint64_t memory_bytes) {
   const std::span<std::byte> bytes = map_input();
   OIIO::Filesystem::IOMemReader reader(bytes.data(), bytes.size());
   const auto input = OIIO::ImageInput::create(plugin, false, nullptr, &reader, "");
-  limit_memory(memory_bytes);  // the reader's thread has started, and no byte of the file was parsed
+  limit_memory(memory_bytes);  // the reader's thread has started, and no byte is parsed yet
   OIIO::ImageSpec spec, how;
   how.attribute("oiio:UnassociatedAlpha", 1);
   if (!input || !input->set_ioproxy(&reader) || !input->open("picture", spec, how))
     fail_damaged(input ? input->geterror() : OIIO::geterror());
-  if (spec.depth > 1 || spec.deep) fail("must be a flat image (got a deep one)");
+  if (spec.depth > 1 || spec.deep) fail("must be a flat image (got a deep image)");
   if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1)
     fail("image is damaged: size must be at least 1 x 1");
   const std::string_view format = plugin;

@@ -15,8 +15,9 @@ struct DecodedHeader {
   std::uint32_t width, height;
 };
 
-// Memory of a decoder for any image, in bytes. kDecoderBytes covers the pages that OpenImageIO's libraries
-// write to while they load (42 MB, `grep RssAnon /proc/PID/status`). kDecoderRoom is for tables and rows.
+// Memory that a decoder needs for every image, in bytes. kDecoderBytes covers the pages that OpenImageIO's
+// libraries write to while they load (42 MB, `grep RssAnon /proc/PID/status`). kDecoderRoom covers tables and
+// row buffers.
 inline constexpr std::uint64_t kDecoderBytes = 48 << 20;
 inline constexpr std::uint64_t kDecoderRoom = 6 << 20;
 

@@ -48,8 +48,8 @@ std::uint64_t extent(std::uint32_t first, std::uint32_t last) {
   return between < 0 ? 0 : static_cast<std::uint64_t>(between) + 1;
 }
 
-// Reads one header, up to the empty attribute name at its end. Adds the number of its attributes to
-// `attributes`. Returns false if the header has none.
+// Reads one header, up to the empty attribute name at its end. Adds the number of attributes to `attributes`.
+// Returns false if the header has no attributes.
 bool read_header(ByteReader& reader, int& attributes, PictureFile& file) {
   std::uint64_t rows = kBlockRows, tile_width = 0;
   Attribute attribute{{}, {}, ByteReader({})};
@@ -70,8 +70,8 @@ bool read_header(ByteReader& reader, int& attributes, PictureFile& file) {
       rows = attribute.value.little_endian_32();
     }
   }
-  // Memory of a row of blocks or tiles: compressed, uncompressed, and in texel order, with 4 bytes per
-  // sample. A tile may extend beyond the image.
+  // Memory of one row of blocks or tiles, with 4 bytes per sample. The decoder has three copies: compressed,
+  // uncompressed, and in texel order. A tile may extend beyond the image.
   constexpr std::uint64_t kMaxSide = 1 << 16, kCopies = 3;
   const std::uint64_t width = std::min(std::max(file.width, tile_width), kMaxSide);
   file.decoder_bytes =
@@ -88,7 +88,7 @@ void inspect_exr(std::string_view bytes, PictureFile& file) {
   ByteReader reader(bytes);
   reader.take(4);
   const std::uint32_t flags = reader.little_endian_32();
-  if (flags & kDeep) throw InputError("", "must be a flat image (got a deep one)");
+  if (flags & kDeep) throw InputError("", "must be a flat image (got a deep image)");
   int attributes = 0;
   read_header(reader, attributes, file);
   PictureFile other{.format = file.format, .parts = {}};

@@ -7,8 +7,9 @@
 namespace orrery {
 namespace {
 
-// Removes the next number from the text, such as 512 from "-Y 512 +X 1024", and returns it. `offset` is the
-// position of the line in the file, in bytes.
+// Returns the next number in the text, such as 512 in "-Y 512 +X 1024", and removes the text up to the end of
+// the number. Returns the maximum value if the number is too large. `offset` is the position of the line in
+// the file, in bytes.
 std::uint64_t side(std::string_view& text, std::size_t offset) {
   const std::size_t digits = text.find_first_of("0123456789");
   if (digits == std::string_view::npos) fail_damaged(offset, "size must have the form -Y 512 +X 1024");
@@ -20,7 +21,7 @@ std::uint64_t side(std::string_view& text, std::size_t offset) {
 
 }  // namespace
 
-// Reads text lines up to an empty one, then the size: "-Y height +X width".
+// Reads text lines up to an empty line, then the line with the size: "-Y height +X width".
 void inspect_hdr(std::string_view bytes, PictureFile& file) {
   constexpr std::size_t kMaxHeader = 1 << 16;  // bytes
   const std::size_t end = bytes.substr(0, kMaxHeader).find("\n\n");

@@ -29,7 +29,8 @@ bool is_frame(unsigned marker) {
          marker != kArithmetic;
 }
 
-// Returns whether the segment is Adobe's marker of 14 bytes, which selects the colour transform.
+// Returns whether the segment is Adobe's APP14 marker, which selects the colour transform. Segments with 64
+// bytes of content or more are other data.
 bool is_colour_transform(unsigned marker, std::string_view content) {
   return marker == kAdobe && content.starts_with("Adobe") && content.size() < 64;
 }
@@ -39,8 +40,8 @@ void read_frame(unsigned marker, ByteReader reader, PictureFile& file) {
   file.height = reader.big_endian(2);
   file.width = reader.big_endian(2);
   file.channels = static_cast<int>(reader.byte());
-  // A progressive file is decoded as a whole, with two bytes per coefficient. Blocks at the edges are
-  // complete.
+  // A progressive file is decoded as a whole, with two bytes per coefficient. The edges are rounded up to
+  // whole blocks.
   constexpr std::uint64_t kBlock = 32;
   if (marker == kProgressive)
     file.decoder_bytes =

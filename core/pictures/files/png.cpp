@@ -9,7 +9,8 @@ namespace {
 constexpr std::array<std::string_view, 7> kTexelChunks = {"IHDR", "PLTE", "tRNS", "gAMA",
                                                           "sRGB", "IDAT", "IEND"};
 
-// Returns the channels of a colour type (PNG specification, 11.2.2). A palette may have an alpha chunk.
+// Returns the number of channels of a colour type (PNG specification, 11.2.2). A palette counts as 4
+// channels, because a tRNS chunk may add alpha.
 int channels_of(unsigned colour_type, std::size_t offset) {
   switch (colour_type) {
     case 0: return 1;

@@ -114,8 +114,8 @@ std::shared_ptr<MemoryAccount> open_account() {
   return MemoryAccount::open([] { return [](std::size_t bytes, bool) { return bytes; }; });
 }
 
-// Runs the stage and requests a stop after `ms` milliseconds. Returns the milliseconds until the stage threw
-// Cancelled, or nullopt if it ended before the request.
+// Runs the stage and requests a stop after `ms` milliseconds. Returns the milliseconds from the request until
+// the stage threw Cancelled, or nullopt if the stage ended before the request.
 std::optional<double> stop_after(const Stage& stage, double ms) {
   std::stop_source source;
   const std::stop_token stop = source.get_token();

@@ -8,11 +8,12 @@
 #include "core/tuning/trial.h"
 #include "tests/bench/measuring.h"
 
-// Compares a BVH that is refitted frame by frame to the motion of a scene with one built for the last frame.
+// Compares a BVH that is refitted frame by frame to the motion of a scene with a BVH built for the last
+// frame.
 //   motion SCENE.json ready   prepares the last frame, starting from the previous one
 //   motion SCENE.json rays    traces some tiles of the last frame
-// Prints facts of the frames as JSON. For each input line "ours" (refitted) or "theirs" (built), it then runs
-// this side once and prints its CPU seconds.
+// Prints facts of the frames as JSON. Then, for each input line "ours" (refitted) or "theirs" (built),
+// runs this side once and prints the CPU seconds.
 namespace orrery::bench {
 namespace {
 

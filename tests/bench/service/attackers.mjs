@@ -1,4 +1,4 @@
-// Attack worker. A separate thread, so that attackers' responses do not delay other clients' responses.
+// Attack worker: a separate thread, so that attackers' responses do not delay other clients' responses.
 // Worker data: {port, name, count, addresses}. Attacks until a message arrives, then posts the outcomes of
 // all requests.
 
@@ -13,7 +13,7 @@ let going = true;
 
 const JSON_HEADERS = { "Content-Type": "application/json" };
 
-// Runs one client. After each response, it sends a new request. It does not read streams.
+// Runs one client. After each response, sends a new request. Does not read streams.
 async function attackOnce(client, [, ask, scene], statuses) {
   let id = null;
   if (scene) {

@@ -1,4 +1,4 @@
-// Attack requests: bodies of at most 64 KiB that cost the service as much time or memory as possible.
+// Attacks: requests with bodies of at most 64 KiB that cost the service as much time or memory as possible.
 
 import { readFileSync } from "node:fs";
 import { manyAttributesExr, putAsset, textPng, tinyJpeg } from "./pictures.mjs";

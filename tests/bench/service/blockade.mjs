@@ -151,7 +151,7 @@ function tell(one) {
   );
 }
 
-// Starts a new service for each attack, because its jobs would continue during the next one.
+// Starts a new service for each attack, because the jobs of an attack would continue during the next attack.
 async function run({ seconds }) {
   const wanted = process.env.BENCH_ATTACK ?? "";
   const tries = [];

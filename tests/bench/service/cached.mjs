@@ -9,7 +9,7 @@ const CONNECTIONS = 8;
 const NOT_MODIFIED = 5000; // requests per second
 const WHOLE = 1500; // requests per second
 
-// Measures with wrk. One thread, because wrk shares the cores with the service.
+// Measures with wrk. Uses one thread, because wrk shares the cores with the service.
 function byWrk(port, path, headers, seconds) {
   const words = ["-t1", `-c${CONNECTIONS}`, `-d${Math.ceil(seconds)}s`];
   for (const [name, value] of Object.entries(headers)) words.push("-H", `${name}: ${value}`);

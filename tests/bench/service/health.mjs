@@ -8,7 +8,7 @@ const EVERY_MS = 20;
 const TARGET_MS = 50;
 
 // Sends a request every `everyMs` ms on a new connection, without waiting for the previous response. Resolves
-// to all responses. Their `ms` includes the time to connect.
+// to all responses. The `ms` of a response includes the time to connect.
 async function probe(port, path, seconds, everyMs = EVERY_MS) {
   const answers = [];
   const start = performance.now();

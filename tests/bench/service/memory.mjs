@@ -115,7 +115,8 @@ async function attack(client, makers, statuses, goesOn) {
   }
 }
 
-// Opens SLOW connections. Three of four stall while receiving an asset, the others while sending a body.
+// Opens SLOW connections. Three of four connections stall while receiving an asset, the others while sending
+// a body.
 function slowConnections(port, asset) {
   return Array.from({ length: SLOW }, (_, i) => {
     const socket = net.connect({ host: "127.0.0.1", port, localAddress: address(i) });

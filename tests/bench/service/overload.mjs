@@ -71,7 +71,7 @@ async function peakRate(service, scenes, seconds) {
 }
 
 // Runs `work`. Resolves to {result, memory}. `memory`: samples of the service's resident bytes minus the
-// bytes in its stores, one each 250 ms.
+// bytes in its stores, one every 250 ms.
 async function withMemory(service, gauges, work) {
   const seen = [];
   let going = true;

@@ -34,7 +34,7 @@ function endOfBandRuns(blocks) {
 
 // Returns a progressive JPEG with 33 million pixels and 4 components in about 360 bytes, for which libjpeg
 // allocates 268 MB of coefficients. `rounds`: number of scans per component. Decoding time is proportional to
-// it.
+// this number.
 export function tinyJpeg(number, rounds = 1) {
   const [width, height] = SIDE;
   const components = [1, 2, 3, 4];

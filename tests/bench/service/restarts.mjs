@@ -14,7 +14,7 @@ import { PAPER, noneRow, outcome, p99, pause, row, ms } from "./support.mjs";
 const CLIENTS = 16;
 const ANSWERS = 30_000;
 const DRAIN_S = 1; // drain delay of the service, longer than the balancer's check interval of 100 ms
-const EVERY = 20; // one of EVERY images is new, the others are cached
+const EVERY = 20; // one in EVERY images is new, the others are cached
 
 const backend = ({ port, healthPort }, i) =>
   `  server s${i} 127.0.0.1:${port} check port ${healthPort} inter 100 fall 1 rise 1`;
@@ -101,7 +101,7 @@ async function run({ times }) {
       exits.push(await service.gone);
       services[i % 2] = await startService(words, service);
       await untilReady(service.healthPort);
-      await pause(300); // time for the balancer to notice, otherwise both would be down
+      await pause(300); // lets the balancer notice, otherwise both services would be down
     }
     while (answers.length < ANSWERS) await pause(20);
     await clients.stop();

@@ -54,7 +54,7 @@ async function sample(service, deadline, seconds) {
   return samples;
 }
 
-// Returns a row that compares the mean of the last third of the samples with that of the middle third.
+// Returns a row that compares the mean of the last third of the samples with the mean of the middle third.
 function trendRow(samples, key, tell, allowed, target) {
   const values = samples.map((one) => one[key]);
   const { middle, last } = thirds(values);

@@ -6,7 +6,7 @@ import { Client } from "./client.mjs";
 import { postScene, startService } from "../daemon.mjs";
 
 export const PAPER = "scenes/paper.json";
-export const FLAKE = "scenes/sphereflake-3.json"; // 820 spheres in few objects
+export const FLAKE = "scenes/sphereflake-3.json"; // 820 spheres and a plane
 
 export const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
@@ -103,7 +103,7 @@ export function processState(pid) {
   };
 }
 
-// Calls `holds()` repeatedly. Resolves to the milliseconds until it resolves to true, or to NaN after
+// Calls `holds()` repeatedly. Resolves to the milliseconds until a call resolves to true, or to NaN after
 // `limitMs`.
 export async function until(holds, limitMs = 30_000) {
   for (const start = performance.now(); ;) {
@@ -156,7 +156,7 @@ export const LAYERS = { layers: ["depth", "normal", "position", "uv", "object", 
 
 // ---- load
 
-// Runs `count` clients until stop(). Each sends a new request after each response.
+// Runs `count` clients until stop(). Each client sends a new request after each response.
 //   pathOf(): path of the next request
 //   onAnswer(answer): called for each response, returns false to stop the client
 //   restMs: pause of a client after a status other than 200

@@ -9,7 +9,7 @@ import { FrameReader, send } from "../daemon.mjs";
 const number = (below) => Math.floor(below * Math.random());
 const json = { "Content-Type": "application/json" };
 
-// Returns an action that stores a new scene and renders it. One of four scenes stays stored until eviction,
+// Returns an action that stores a new scene and renders it. One in four scenes stays stored until eviction,
 // the others are deleted.
 function scenesComeAndGo() {
   const scene = JSON.parse(readFileSync(number(2) ? PAPER : FLAKE, "utf8"));

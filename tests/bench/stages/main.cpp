@@ -14,8 +14,8 @@
 //   stages SCENE.json STRUCTURE predict none|network|last|random   shadow rays
 //   stages SCENE.json STRUCTURE known nearest                      camera rays with precomputed hits
 //   stages SCENE.json STRUCTURE reorder camera|bounced|scattered   closest hits
-// Prints facts of the rays as JSON. For each input line "ours" (with the stage) or "theirs" (without), it
-// then traces all rays once and prints the CPU seconds.
+// Prints facts of the rays as JSON. Then, for each input line "ours" (with the stage) or "theirs" (without),
+// traces all rays once and prints the CPU seconds.
 namespace orrery::bench {
 namespace {
 
@@ -65,8 +65,8 @@ std::uint64_t rays_of(const Calls& calls) {
   return rays;
 }
 
-// Returns full batches of rays in random directions from the hits of the camera rays. If `scattered`, they
-// are in random order.
+// Returns full batches of rays in random directions from the hits of the camera rays. If `scattered`, the
+// rays are in random order.
 Calls bounced(const Calls& camera, const Accelerator<float>& accelerator, bool scattered) {
   test::Random random(1);
   std::vector<Ray<float>> rays;

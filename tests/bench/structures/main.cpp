@@ -12,7 +12,7 @@
 #include "tests/support/batches.h"
 #include "tests/support/random.h"
 
-// Measures build time and ray cost of every structure on one scene, on one thread. The rays are those of some
+// Measures build time and ray cost of every structure on one scene, on one thread. Traces the rays of some
 // tiles of the image, or random rays through the bounded primitives.
 //   structures SCENE.json ROUNDS picture|random [NAME...]
 // Prints JSON. Times are CPU time. Each round measures every structure once, so that drift of the machine's
@@ -63,7 +63,8 @@ struct Candidate {
   TraceCounts counts;  // from the last round
 };
 
-// Returns true for structures without a hierarchy on many primitives, because they would take minutes.
+// Returns true for structures without a hierarchy on many primitives, because measuring them would take
+// minutes.
 bool too_slow(const AcceleratorType& type, int primitives) {
   const std::string_view name = type.name;
   return primitives > 20'000 && (name == "list" || name == "boxes" || name == "oriented-boxes");
