@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <stop_token>
 
 #include "core/plan/cost.h"
@@ -28,7 +29,13 @@ struct RenderServices {
   RayEstimator& estimator;
   WorkMemory& memory;
   SceneStore& scenes;
-  double interactive_rays;  // maximum cost of a frame with interactive priority, in usual rays
+  double interactive_rays;               // maximum cost of a frame with interactive priority, in usual rays
+  std::chrono::seconds request_seconds;  // time limit of one request
+
+  // Throws Busy while draining.
+  void require_open() const {
+    if (draining.stop_requested()) throw Busy("service is shutting down", 5);
+  }
 
   // Returns the slot request for a frame. Its cost is the estimate in usual rays plus kFixedCost. The frame
   // is batch work if either the plan alone or the learned estimate exceeds interactive_rays.

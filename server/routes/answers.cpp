@@ -159,10 +159,10 @@ void add_accuracy(Fields& fields, const Picture& picture) {
     add_with_former_name(fields, "Bias", bias);
 }
 
-Response picture_response(std::string_view type, const Rendered& rendered, const Timing& timing) {
+Response picture_response(std::string_view type, const Rendered& rendered, const RequestTrace& trace) {
   Response response = text_response(200, type, {rendered.picture, rendered.picture->bytes});
   Fields fields;
-  std::string told = server_timing(timing);
+  std::string told = server_timing(trace.timing);
   if (!told.empty()) told += ", ";
   if (rendered.made_now) {
     const RenderStats& stats = rendered.picture->stats;

@@ -50,7 +50,7 @@ void add_accuracy(Fields& fields, const Picture& picture);
 // Returns a response with the image, Server-Timing, Orrery-Warning and the headers of add_accuracy(). If the
 // image was rendered for this request, Server-Timing includes the accelerator and its counted work, and
 // Orrery-Rays is set.
-Response picture_response(std::string_view type, const Rendered& rendered, const Timing& timing);
+Response picture_response(std::string_view type, const Rendered& rendered, const RequestTrace& trace);
 
 // Sets the headers of an image with a budget: Orrery-Budget with the outcome and, for PNG, Content-Location.
 // Content-Location is a URL below `prefix` that returns the same bytes without a budget.

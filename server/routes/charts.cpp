@@ -51,11 +51,11 @@ struct ChartOrder {
   Study::Extent extent;
 };
 
-ChartOrder read_chart_order(App& app, Request& request, Timing& timing) {
+ChartOrder read_chart_order(App& app, Request& request, RequestTrace& trace) {
   if (request.body.empty()) request.body = Body("{}");
   ChartOrder order;
   order.extent.threads = app.settings().threads;
-  app.read(request.body, caller_of(request), timing, [&](const Document& document, const AssetSource&) {
+  app.read(request.body, caller_of(request), trace, [&](const Document& document, const AssetSource&) {
     for (const char* key : {"scene", "scene_id"})
       if (document.member(key))
         throw InputError(std::string("/") + key, "cannot be used here (the URL names the scene)");
@@ -76,11 +76,11 @@ std::string canonical_chart(const Scene& scene, const ChartOrder& order) {
 Response start_chart(App& app, Request& request) {
   app.require_open();
   const auto prepared = app.scenes().find(request.path_value("id"));
-  Timing timing;
-  const ChartOrder order = read_chart_order(app, request, timing);
+  RequestTrace trace;
+  const ChartOrder order = read_chart_order(app, request, trace);
   const Scene& scene = prepared->scene();
   JobSpec spec{prepared, std::make_unique<ChartWork>(scene, order.view, order.extent), request.client};
-  return start_job(app, request, std::move(spec), canonical_chart(scene, order), timing);
+  return start_job(app, request, std::move(spec), canonical_chart(scene, order), trace);
 }
 
 Response get_chart(App& app, Request& request) {

@@ -1,4 +1,3 @@
-#include "core/plan/plan.h"
 #include "server/app/app.h"
 #include "server/rendering/picture_key.h"
 #include "server/routes/answers.h"
@@ -8,17 +7,14 @@ namespace orrery {
 namespace {
 
 Response frame(App& app, Request& request) {
-  const auto scene = app.scenes().find(request.path_value("id"));
-  Timing timing;
-  const auto start = Clock::now();
-  RenderRequest wanted = read_query(request);
-  require_layers_kept(wanted, FileFormat::png);
-  choose_space(wanted, FileFormat::png);
-  const Plan plan = make_plan(scene->scene(), wanted);
-  timing.plan = milliseconds_since(start);
+  RequestTrace trace;
+  const RenderOrder order = make_order(app.scenes().find(request.path_value("id")), read_query(request),
+                                       FileFormat::png, caller_of(request), trace);
+  const Scene& scene = order.scene->scene();
+  const RenderRequest& wanted = order.request;
 
   Response response;
-  const std::string etag = etag_of(scene->scene(), wanted);
+  const std::string etag = etag_of(scene, wanted);
   bool lasts = wanted.seconds.value_or(0) == 0;
   // An image that missed its budget has no ETag. An ETag from the client therefore proves a met budget, but
   // "*" does not.
@@ -29,10 +25,9 @@ Response frame(App& app, Request& request) {
     response.set("Content-Type", "image/png");
     lasts = lasts && !has_budget(wanted);
   } else {
-    const Rendered rendered = app.render(*scene, plan, work_key(scene->scene(), wanted), FileFormat::png,
-                                         caller_of(request), timing);
-    response = picture_response("image/png", rendered, timing);
-    set_budget(response, "image/png", scene->scene(), *rendered.picture, request.prefix);
+    const Rendered rendered = app.renders().render(order, trace);
+    response = picture_response("image/png", rendered, trace);
+    set_budget(response, "image/png", scene, *rendered.picture, request.prefix);
     // Another instance may have a higher limit on rays and meet the budget.
     lasts = lasts && !is_missed(rendered.picture->budget);
   }

@@ -5,7 +5,7 @@
 #include "server/rendering/orbit_budget.h"
 #include "server/rendering/picture_key.h"
 #include "server/routes/job_answers.h"
-#include "server/routes/render_order.h"
+#include "server/routes/render_body.h"
 
 // POST /v1/jobs: renders images and orbits that take too long for one HTTP request.
 namespace orrery {
@@ -74,12 +74,12 @@ struct FrameOrder {
   int frames = 1;
 };
 
-FrameOrder read_frame_order(App& app, Request& request, Timing& timing) {
+FrameOrder read_frame_order(App& app, Request& request, RequestTrace& trace) {
   FrameOrder frames;
   double step_degrees = 0;
   std::optional<double> time_step_s;
   bool orbits = false;
-  RenderOrder order = read_render_order(app, request, timing, [&](Params& p) {
+  RenderBody body = read_render_body(app, request, trace, [&](Params& p) {
     orbits = p.has("orbit");
     p.optional_object("orbit", "Camera orbit; default: one image.", [&](Params& o) {
       const std::int64_t most = app.settings().orbit_frames;
@@ -92,10 +92,10 @@ FrameOrder read_frame_order(App& app, Request& request, Timing& timing) {
       if (o.has("time_step_s")) time_step_s = time;
     });
   });
-  require_layers_kept(order.request, FileFormat::png);
-  choose_space(order.request, FileFormat::png);
-  frames.scene = order.scene;
-  frames.path = full_turn(order.scene->scene(), order.request, frames.frames);
+  require_layers_kept(body.request, FileFormat::png);
+  choose_space(body.request, FileFormat::png);
+  frames.scene = body.scene;
+  frames.path = full_turn(body.scene->scene(), body.request, frames.frames);
   frames.path.step_degrees = step_degrees;
   if (!orbits) frames.path.step_seconds = 0;
   if (time_step_s) frames.path.step_seconds = *time_step_s;
@@ -105,12 +105,12 @@ FrameOrder read_frame_order(App& app, Request& request, Timing& timing) {
 
 Response start_frames(App& app, Request& request) {
   app.require_open();
-  Timing timing;
-  const FrameOrder order = read_frame_order(app, request, timing);
+  RequestTrace trace;
+  const FrameOrder order = read_frame_order(app, request, trace);
   JobSpec spec{order.scene, std::make_unique<FrameWork>(order.scene, order.path, order.frames),
                request.client};
   return start_job(app, request, std::move(spec),
-                   canonical_orbit(order.scene->scene(), order.path, order.frames), timing);
+                   canonical_orbit(order.scene->scene(), order.path, order.frames), trace);
 }
 
 }  // namespace

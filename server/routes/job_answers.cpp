@@ -36,7 +36,7 @@ ordered_json job_json(const Job& job, const JobStatus& status, const std::string
 }
 
 Response start_job(App& app, Request& request, JobSpec spec, const std::string& content,
-                   const Timing& timing) {
+                   const RequestTrace& trace) {
   const std::string key = request.header("Idempotency-Key").value_or("");
   constexpr std::size_t kLongestKey = 255;
   if (key.size() > kLongestKey)
@@ -45,7 +45,7 @@ Response start_job(App& app, Request& request, JobSpec spec, const std::string& 
   const Jobs::StartResult started = app.jobs().start(std::move(spec), key, content);
   Response response = json_answer(202, job_json(*started.job, started.job->status(), request.prefix));
   response.set("Location", job_path(started.job->id()));
-  response.set("Server-Timing", server_timing(timing));
+  response.set("Server-Timing", server_timing(trace.timing));
   response.set("Cache-Control", "no-store");
   return response;
 }

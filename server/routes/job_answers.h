@@ -14,7 +14,7 @@ nlohmann::ordered_json job_json(const Job& job, const JobStatus& status, const s
 // Starts a job and returns 202. A repeated Idempotency-Key with the same `content` returns the existing job.
 // Throws HttpError 400 if the key is too long, and the errors of Jobs::start().
 Response start_job(App& app, Request& request, JobSpec spec, const std::string& content,
-                   const Timing& timing);
+                   const RequestTrace& trace);
 
 // Returns the result file at the request's path, or 304 without creating the file if the client has it.
 // Throws NotFound if no such file exists, and HttpError 409 if it is not finished.

@@ -114,7 +114,7 @@ Response orbit(App& app, Request& request) {
   const Plan first = make_plan(scene, spec.path.at(0));
   set_warnings(response, find_warnings(scene, first));
   if (request.method == "HEAD") return response;
-  app.require_request_rays(scene, first);
+  app.renders().require_request_rays(scene, first);
   OrbitRequest orbit{.place = app.streams().open(request.client),
                      .viewer = app.orbits().watch(spec),
                      .first = {},

@@ -1,9 +1,7 @@
 #include <array>
 
-#include "core/plan/plan.h"
-#include "server/rendering/picture_key.h"
 #include "server/routes/answers.h"
-#include "server/routes/render_order.h"
+#include "server/routes/render_body.h"
 
 // POST /v1/render: renders a scene, or a request {scene or scene_id, camera, image, render, budget}.
 namespace orrery {
@@ -26,16 +24,12 @@ Response render(App& app, Request& request) {
   app.require_open();
   constexpr std::array kTypes{kKinds[0].type, kKinds[1].type, kKinds[2].type};
   const std::string_view type = negotiate(request, kTypes);
-  Timing timing;
-  RenderOrder order = read_render_order(app, request, timing);
-  require_layers_kept(order.request, format_of(type));
-  choose_space(order.request, format_of(type));
-  const auto start = Clock::now();
-  const Plan plan = make_plan(order.scene->scene(), order.request);
-  timing.plan = milliseconds_since(start);
-  const Rendered rendered = app.render(*order.scene, plan, work_key(order.scene->scene(), order.request),
-                                       format_of(type), caller_of(request), timing);
-  Response response = picture_response(type, rendered, timing);
+  RequestTrace trace;
+  RenderBody body = read_render_body(app, request, trace);
+  const RenderOrder order =
+      make_order(std::move(body.scene), std::move(body.request), format_of(type), caller_of(request), trace);
+  const Rendered rendered = app.renders().render(order, trace);
+  Response response = picture_response(type, rendered, trace);
   set_budget(response, type, order.scene->scene(), *rendered.picture, request.prefix);
   response.set("Orrery-Scene-Id", order.scene->scene().id);
   response.set("Vary", "Accept");

@@ -38,17 +38,16 @@ std::string etag_of_scene(const Scene& scene) { return "\"" + scene.id + "\""; }
 
 Response add_scene(App& app, Request& request) {
   app.require_open();
-  Timing timing;
+  RequestTrace trace;
   SceneStore::KeepResult kept;
-  app.read(request.body, caller_of(request), timing,
-           [&](const Document& document, const AssetSource& assets) {
-             kept = app.scenes().keep(document, assets, caller_of(request).client);
-           });
+  app.read(request.body, caller_of(request), trace, [&](const Document& document, const AssetSource& assets) {
+    kept = app.scenes().keep(document, assets, caller_of(request).client);
+  });
   const Scene& scene = kept.scene->scene();
   Response response = json_answer(kept.known ? 200 : 201, summary(scene));
   response.set("Location", "/v1/scenes/" + scene.id);
   response.set("ETag", etag_of_scene(scene));
-  response.set("Server-Timing", server_timing(timing));
+  response.set("Server-Timing", server_timing(trace.timing));
   response.set("Cache-Control", "no-store");
   return response;
 }

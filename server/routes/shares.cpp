@@ -16,8 +16,8 @@ Response share(App& app, const Router& router, Request& request) {
   constexpr std::size_t kLongestPath = 1900;  // leaves space for the link parameters in a request target
   std::string path;
   std::int64_t seconds = kUsual_s;
-  Timing timing;
-  app.read(request.body, caller_of(request), timing, [&](const Document& document, const AssetSource&) {
+  RequestTrace trace;
+  app.read(request.body, caller_of(request), trace, [&](const Document& document, const AssetSource&) {
     read_document(document, [&](Params& p) {
       path = p.text("path", "Path to share; starts with /v1/.", kLongestPath);
       seconds = p.integer("seconds", "Lifetime of the link in seconds.", 1, kLongest_s, kUsual_s);

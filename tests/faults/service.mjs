@@ -4,8 +4,8 @@ export const serviceFaults = [
   {
     fault: 14,
     about: "the last of two Content-Length headers is used",
-    file: "server/http/head.cpp",
-    from: 'if (head.content_length) throw HttpError(400, "duplicate Content-Length header");',
+    file: "server/http/framing_check.cpp",
+    from: 'if (head.checked.content_length) throw HttpError(400, "duplicate Content-Length header");',
     to: "",
     target: "test_http",
     tests: ["Http/MalformedRequests.*/TwoLengths", "Http/MalformedRequests.*/TwoEqualLengths"],
@@ -13,8 +13,8 @@ export const serviceFaults = [
   {
     fault: 14,
     about: "Content-Length with Transfer-Encoding is accepted",
-    file: "server/http/head.cpp",
-    from: "if (head.chunked && head.content_length)",
+    file: "server/http/framing_check.cpp",
+    from: "if (head.checked.chunked && head.checked.content_length)",
     to: "if (false)",
     target: "test_http",
     tests: ["Http/MalformedRequests.*/LengthAndCoding", "Http/MalformedRequests.*/CodingAndLength"],

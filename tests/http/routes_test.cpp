@@ -130,10 +130,10 @@ TEST(RouteBodies, ChargesClientAccount) {
   App app(settings, timer);
   Router router;
   add_routes(router, app);
-  Timing timing;
+  RequestTrace trace;
   std::string scene;
   Body body(small_scene().dump());
-  app.read(body, {"127.0.0.1", {}}, timing, [&](const Document& document, const AssetSource& assets) {
+  app.read(body, {"127.0.0.1", {}}, trace, [&](const Document& document, const AssetSource& assets) {
     scene = app.scenes().keep(document, assets, "127.0.0.1").scene->scene().id;
   });
   int found = 0;

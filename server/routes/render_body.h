@@ -10,14 +10,14 @@ namespace orrery {
 class Params;
 
 // Scene and render options of a request body.
-struct RenderOrder {
+struct RenderBody {
   SceneStore::Prepared scene;
   RenderRequest request;
 };
 
 // Reads either {scene or scene_id, camera, image, render, budget} or a bare scene. In the first case, `more`
 // may read further keys. Consumes the request's body. Throws the errors of App::read() and read_request().
-RenderOrder read_render_order(App& app, Request& request, Timing& timing,
-                              const std::function<void(Params&)>& more = {});
+RenderBody read_render_body(App& app, Request& request, RequestTrace& trace,
+                            const std::function<void(Params&)>& more = {});
 
 }  // namespace orrery

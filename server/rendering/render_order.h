@@ -1,0 +1,47 @@
+#pragma once
+
+#include <stop_token>
+#include <string>
+
+#include "core/plan/request.h"
+#include "server/cache/scene_store.h"
+#include "server/telemetry/service_counters.h"
+
+namespace orrery {
+
+// Durations of the steps of a response, in milliseconds.
+struct Timing {
+  double load = 0, plan = 0, queue = 0, build = 0, render = 0, encode = 0;
+};
+
+// Progress of a request: the durations of its steps so far, and the current step.
+struct RequestTrace {
+  Timing timing = {};
+  Stage stage = Stage::read;
+};
+
+// Client of a request.
+struct Caller {
+  std::string client;    // client that the work is charged to
+  std::stop_token gone;  // stop is requested once no client waits for the result
+};
+
+// One image to render. make_order() is the only function that creates orders, so that scene, request and plan
+// always belong together.
+struct RenderOrder {
+  SceneStore::Prepared scene;
+  RenderRequest request;
+  FileFormat format;
+  Plan plan;
+  Caller caller;
+
+  // Returns the key of the image, which does not depend on its format.
+  std::string key() const;
+};
+
+// Plans the image. Adds the duration to `trace`. Throws the InputError of make_plan(), and InputError if the
+// format cannot store the requested layers.
+RenderOrder make_order(SceneStore::Prepared scene, RenderRequest request, FileFormat format, Caller caller,
+                       RequestTrace& trace);
+
+}  // namespace orrery
