@@ -43,8 +43,8 @@ class Refinement {
   bool at_end() const { return next_ == samples_.size(); }
 
   // Returns the next image, or nullopt after the last image and after an exception. While draining, only the
-  // first image is returned. Throws the errors of RenderService::render(), but later passes are not rejected if the
-  // queue is full.
+  // first image is returned. Throws the errors of RenderService::render(), but later passes are not rejected
+  // if the queue is full.
   std::optional<Step> next(const std::stop_token& gone);
 
  private:

@@ -70,8 +70,9 @@ class JobsTest : public testing::Test {
     return job->status();
   }
   RenderServices services_with(Admission& admission) {
-    return {pool_,      admission,    timer_,  drains_.get_token(),        ends_.get_token(), meters_,
-            estimator_, work_memory_, scenes_, Settings().interactive_rays};
+    return {
+        pool_,      admission,    timer_,  drains_.get_token(),         ends_.get_token(),         meters_,
+        estimator_, work_memory_, scenes_, Settings().interactive_rays, Settings().request_seconds};
   }
   static std::string error_of(const JobStatus& status) {
     try {
