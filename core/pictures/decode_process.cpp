@@ -46,7 +46,9 @@ std::string decoder_path() {
   namespace fs = std::filesystem;
   std::error_code error;
   const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
-  for (const fs::path& path : {folder / "orrery-decode", folder.parent_path() / "orrery-decode"})
+  const fs::path parent = folder.parent_path();
+  for (const fs::path& path :
+       {folder / "orrery-decode", parent / "orrery-decode", parent / "libexec/orrery/orrery-decode"})
     if (access(path.c_str(), X_OK) == 0) return path;
   throw InputError("", "cannot read images: program orrery-decode is missing in " + folder.string());
 }

@@ -46,7 +46,19 @@ const kFloors = [
 const kRegisteredRooms = [...kFloors[3].filter((room) => room !== "core/stages"), "core/techniques", "core/stability"];
 const kGenerated = ["core/base/version.h"]; // in the build folder
 const kMaxLines = 500;
-const kTextFolders = [".ci", "core", "docker", "docs", "packaging", "scenes", "script", "server", "tests", "web"];
+const kTextFolders = [
+  ".ci",
+  "cmake",
+  "core",
+  "docker",
+  "docs",
+  "packaging",
+  "scenes",
+  "script",
+  "server",
+  "tests",
+  "web",
+];
 const kCounted = new Set([".cpp", ".h", ".js", ".mjs", ".css", ".html", ".sh", ".cmake"]);
 const kText = new Set([...kCounted, ".in", ".md", ".json", ".yaml", ".yml", ".txt", ".svg", ".pov", ".service", ""]);
 const kUnread = new Set(["package-lock.json", "LICENSE", ".git"]); // .git is a file in a worktree
