@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/base/shorten.h"
+#include "core/params/params.h"
 #include "core/plan/cost.h"
 #include "core/plan/warnings.h"
 #include "core/render/views.h"
