@@ -121,8 +121,10 @@ Session::Session(SessionServices& services, Connection& connection)
       [this](const httplib::Request&, httplib::Response& raw) { return answer_without_body(raw); });
   const auto with_body = [this](const httplib::Request&, httplib::Response& raw,
                                 const httplib::ContentReader& reader) { answer_with_body(raw, reader); };
-  Post(".*", with_body);
-  Put(".*", with_body);
+  constexpr const char* kAnyPath =
+      "[\\s\\S]*";  // "." does not match the line breaks that a path may decode to
+  Post(kAnyPath, with_body);
+  Put(kAnyPath, with_body);
   set_post_routing_handler([this](const httplib::Request&, httplib::Response& raw) { finish_headers(raw); });
 }
 
@@ -143,8 +145,10 @@ bool Session::exchange() {
   const bool written =
       process_request(connection_, true, closes, [this](httplib::Request& raw) { begin(raw); }) &&
       connection_.flush();
-  // cpp-httplib rejects a head by itself only if check_head() lacks a rule of it.
-  if (!exchange_->response) exchange_->response = Response{.status = 400, .note = "unchecked head"};
+  if (!exchange_->response) {  // cpp-httplib answered by itself: check_head() lacks a rule of it
+    exchange_->response = Response{.status = 400, .note = "request rejected by cpp-httplib"};
+    exchange_->keep_alive = false;
+  }
   Response& response = *exchange_->response;
   exchange_->work.reset();    // frees the slot
   response.stream = nullptr;  // may wait for threads of the stream
@@ -298,10 +302,11 @@ bool Session::stream_to(httplib::DataSink& sink) {
 void Session::finish_headers(httplib::Response& raw) const {
   const Exchange& now = *exchange_;
   for (const char* added : {"Keep-Alive", "Accept-Ranges", "Connection"}) raw.headers.erase(added);
-  if (!now.keep_alive)
+  if (!now.keep_alive || !now.response)
     raw.set_header("Connection", "close");
   else if (now.minor_version == 0)
     raw.set_header("Connection", "keep-alive");
+  if (!now.response) return;
   // A route may answer HEAD without creating the body. Its length is then unknown, not 0.
   if (!may_have_body(raw.status) || now.response->stream || (now.head_only && now.response->body.empty()))
     raw.headers.erase("Content-Length");

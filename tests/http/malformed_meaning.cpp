@@ -81,6 +81,14 @@ std::vector<RawCase> meaning_cases() {
       {"OptionsForPath", "OPTIONS /healthz HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n", {204}},
 
       // Very long lists and queries.
+      {"BodyWithLineBreakInHost",
+       "POST http://a%0Ab/v1/render HTTP/1.1\r\nHost: a\r\nContent-Length: 2\r\n\r\n{}" +
+           std::string("GET /healthz HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n"),
+       {422, 200}},
+      {"ChunksOverLimitWithLineBreakInHost",
+       "POST http://a%0Ab/v1/render HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: chunked\r\n\r\n800001\r\n"
+       "GET /healthz HTTP/1.1\r\nHost: a\r\n\r\n",
+       {413}},
       {"AcceptLong", get("Accept: " + std::string(8'000, ',') + "\r\n"), {200}},
       {"AcceptWithManyParameters",
        "GET /v1/scenes/" + std::string(64, '0') +
