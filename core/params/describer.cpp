@@ -45,8 +45,8 @@ Schema three_numbers(const char* type, const Range& range) {
 }
 
 constexpr const char* kBeyond =
-    " The program also checks conditions that a schema cannot express: names must exist, points must "
-    "differ, and indices must be below a count.";
+    " The program also checks conditions that a schema cannot express: names must exist, certain "
+    "points must be distinct, and vertex indices must be less than the number of positions.";
 
 const Schema kEmptyList = Schema::array();
 const Schema kEmptyObject = Schema::object();

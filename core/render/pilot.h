@@ -10,9 +10,10 @@ struct Pilot {
   double share;  // traced fraction of the image's pixels, in (0, 1]
 };
 
-// Traces `samples` samples in one block of 4 x 4 pixels per tile, 1/64 of the image. A small image has
-// several blocks per tile: 1024 pixels in all, or the whole image if it is smaller. Returns the statistics of
-// these pixels and discards the film. The result, except times, depends only on scene and plan. Throws the
+// Traces `samples` samples per pixel in one block of 4 x 4 pixels per tile, about 1/64 of the image. An image
+// with fewer than 64 tiles has ceil(64 / tiles) blocks per tile, or all blocks of a tile that has fewer.
+// Returns the statistics of these pixels and discards the film. The result, except times, depends only on
+// scene, plan and `samples`. Throws the
 // errors in renderer.h except BudgetMissed. Uses only stop, background and lease of `control`. REQUIRES:
 // `samples` is 1 if plan->samples is 1.
 Pilot trace_pilot(const PreparedScene& scene, const SettledPlan& plan, int samples, WorkerPool& pool,

@@ -80,17 +80,17 @@ StabilityFigures measure() {
 }  // namespace
 
 StabilityRow rare_feature_row() {
-  return {
-      "E20",
-      "Features that few samples hit",
-      "image of 1,024 pixels with a dot on 1 % of each, rendered to an error of 0.01: relative error of the "
-      "mean",
-      "%",
-      "separate sample count per pixel: a pixel stops once both halves of its samples agree",
-      70,
-      "one sample count for the image, chosen from the sample halves of all pixels",
-      3,
-      measure};
+  return {"E20",
+          "Features that few samples hit",
+          "image of 1,024 pixels, each with a dot over 1 % of its area, rendered to an error of 0.01: "
+          "relative error of the "
+          "mean",
+          "%",
+          "separate sample count per pixel: a pixel stops once both halves of its samples agree",
+          70,
+          "one sample count for the image, chosen from the sample halves of all pixels",
+          3,
+          measure};
 }
 
 }  // namespace orrery

@@ -56,7 +56,7 @@ class Connection final : public httplib::Stream {
   // Writes the buffered bytes. Returns false where write() returns -1.
   bool flush();
 
-  // cpp-httplib asks these before it reads or writes; read() and write() wait by themselves.
+  // cpp-httplib calls these functions before it reads or writes. They never wait: read() and write() do.
   bool is_readable() const override { return true; }
   bool is_writable() const override { return !broken_; }
   void get_remote_ip_and_port(std::string& ip, int& port) const override;

@@ -36,7 +36,7 @@ inline double limited_retry_s(double seconds) { return std::clamp(seconds, 1.0, 
 
 // Limit on concurrent items of one kind. require_one_more() throws LimitExceeded if `all`, the number of
 // items, is at least `most`. It throws ClientLimitExceeded if `own`, the number of items of the client, is at
-// least half of `most`.
+// least max(1, most / 2), rounded down.
 struct Quota {
   const char *noun, *state, *limit;  // for messages: "job", "running", "jobs" (setting)
   int most;

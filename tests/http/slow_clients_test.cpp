@@ -88,7 +88,7 @@ TEST_F(SlowClients, EvictsClientsThatDoNotRead) {
   expect_descriptors_come_back(before);
 }
 
-TEST_F(SlowClients, EvictsRejectedClientsThatKeepSending) {
+TEST_F(SlowClients, EvictsRejectedClientsWithIncompleteBodies) {
   const std::size_t before = daemon_.open_files();
   Clients clients = open("POST /nosuch HTTP/1.1\r\nHost: x\r\nContent-Length: 5000\r\n\r\n{");
   expect_others_are_served();

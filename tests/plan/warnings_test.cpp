@@ -62,7 +62,8 @@ TEST(Warnings, ReportsEnergyCreatingMaterials) {
   EXPECT_EQ(warned(scene), "");
 }
 
-// A path that leaves the floor through or off a smooth ball hits a source without extent with probability 0.
+// A path from the floor that a smooth ball reflects or refracts hits a point, spot, line or parallel light
+// with probability 0.
 TEST(Warnings, ReportsLightsUnreachableThroughSmoothSurfaces) {
   covers("light-53");
   const auto with = [](const char* light, const char* ball) {
