@@ -9,6 +9,11 @@
 namespace orrery {
 namespace {
 
+// Path of all requests for cpp-httplib. Its routes are regular expressions, whose matching recurses once per
+// character and treats line breaks as special, so it never sees the path of a client. Session routes by
+// itself.
+constexpr const char* kPath = "/";
+
 constexpr int kClientGone = 499;  // status of cancelled requests
 
 // Replaces Host by the host of an absolute target, which takes precedence (RFC 9112, 3.2.2).
@@ -121,10 +126,8 @@ Session::Session(SessionServices& services, Connection& connection)
       [this](const httplib::Request&, httplib::Response& raw) { return answer_without_body(raw); });
   const auto with_body = [this](const httplib::Request&, httplib::Response& raw,
                                 const httplib::ContentReader& reader) { answer_with_body(raw, reader); };
-  constexpr const char* kAnyPath =
-      "[\\s\\S]*";  // "." does not match the line breaks that a path may decode to
-  Post(kAnyPath, with_body);
-  Put(kAnyPath, with_body);
+  Post(kPath, with_body);
+  Put(kPath, with_body);
   set_post_routing_handler([this](const httplib::Request&, httplib::Response& raw) { finish_headers(raw); });
 }
 
@@ -189,12 +192,12 @@ void Session::begin(httplib::Request& raw) {
   } catch (...) {
     now.response = services_.handler.refuse(now.request, std::current_exception());
   }
-  const bool empty = raw.get_header_value("Content-Length") == "0";
+  raw.path = kPath;
   // cpp-httplib would act upon other headers: it would compress responses again, decompress bodies without a
   // limit, and parse forms.
   std::erase_if(raw.headers, [](const auto& field) { return !is_framing_header(field.first); });
   // A client waits for 100 Continue only if it has not sent the body yet (RFC 9110, 10.1.1).
-  const bool reads = !now.response && now.admitted.body && !empty;
+  const bool reads = !now.response && now.admitted.body && connection_.body_unread();
   if (reads && !expect.empty() && now.minor_version == 1 && !connection_.has_received_more())
     raw.set_header("Expect", "100-continue");
 }
@@ -232,15 +235,15 @@ Body Session::read_body(const httplib::ContentReader& reader) {
 void Session::answer() {
   Exchange& now = *exchange_;
   // HTTP/1.0 has no interim responses.
-  now.work.emplace(services_, connection_, now.client, now.minor_version == 1);
-  now.request.gone = now.work->gone.get_token();
   try {
+    now.work.emplace(services_, connection_, now.client, now.minor_version == 1);
+    now.request.gone = now.work->gone.get_token();
     now.work->handler.emplace(services_.slots, now.client, now.request.gone, connection_.waiting());
     now.response = now.admitted.answer(now.request);
   } catch (...) {
     now.response = refuse(std::current_exception());
   }
-  now.work->watching.stop_probing();
+  if (now.work) now.work->watching.stop_probing();
 }
 
 Response Session::refuse(std::exception_ptr error) const {

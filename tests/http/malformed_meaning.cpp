@@ -81,6 +81,10 @@ std::vector<RawCase> meaning_cases() {
       {"OptionsForPath", "OPTIONS /healthz HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n", {204}},
 
       // Very long lists and queries.
+      {"ExpectWithEmptyBody",
+       "POST /v1/render HTTP/1.1\r\nHost: a\r\nConnection: close\r\nExpect: 100-continue\r\n"
+       "Content-Length: 00\r\n\r\n",
+       {400}},
       {"BodyWithLineBreakInHost",
        "POST http://a%0Ab/v1/render HTTP/1.1\r\nHost: a\r\nContent-Length: 2\r\n\r\n{}" +
            std::string("GET /healthz HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n"),
