@@ -191,16 +191,17 @@ void read_flag(Settings& settings, const Setting& setting, const CLI::App& app,
 }
 
 void refuse_unknown_variables(std::vector<Problem>& problems) {
-  const std::vector<std::string> known = names_as(variable_of);
   for (char** entry = environ; *entry; ++entry) {
     const std::string_view text(*entry);
     const std::string name(text.substr(0, text.find('=')));
-    const bool ours = name.starts_with(kPrefix) && name != kTokenOfClients;
-    const bool former = std::any_of(all_settings().begin(), all_settings().end(), [&](const Setting& s) {
-      return !s.former.empty() && variable_of(s.former) == name;
-    });
-    if (ours && !former && std::find(known.begin(), known.end(), name) == known.end())
-      problems.push_back(unknown("", "setting", name, known));
+    if (!name.starts_with(kPrefix) || name == kTokenOfClients) continue;
+    const bool is_setting =
+        std::any_of(all_settings().begin(), all_settings().end(), [&](const Setting& row) {
+          const auto names = names_of(row);
+          return std::any_of(names.begin(), names.end(),
+                             [&](auto known) { return variable_of(known) == name; });
+        });
+    if (!is_setting) problems.push_back(unknown("", "setting", name, names_as(variable_of)));
   }
 }
 

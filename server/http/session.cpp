@@ -11,7 +11,7 @@ namespace {
 
 // Path of all requests for cpp-httplib. Its routes are regular expressions, whose matching recurses once per
 // character and treats line breaks as special, so it never sees the path of a client. Session routes by
-// itself.
+// itself, and passes every request with a body as a POST.
 constexpr const char* kPath = "/";
 
 constexpr int kClientGone = 499;  // status of cancelled requests
@@ -124,10 +124,9 @@ Session::Session(SessionServices& services, Connection& connection)
   svr_sock_ = connection.fd();  // cpp-httplib writes bodies while this is a socket
   set_pre_routing_handler(
       [this](const httplib::Request&, httplib::Response& raw) { return answer_without_body(raw); });
-  const auto with_body = [this](const httplib::Request&, httplib::Response& raw,
-                                const httplib::ContentReader& reader) { answer_with_body(raw, reader); };
-  Post(kPath, with_body);
-  Put(kPath, with_body);
+  Post(kPath, [this](const httplib::Request&, httplib::Response& raw, const httplib::ContentReader& reader) {
+    answer_with_body(raw, reader);
+  });
   set_post_routing_handler([this](const httplib::Request&, httplib::Response& raw) { finish_headers(raw); });
 }
 
@@ -193,6 +192,7 @@ void Session::begin(httplib::Request& raw) {
     now.response = services_.handler.refuse(now.request, std::current_exception());
   }
   raw.path = kPath;
+  if (now.admitted.body) raw.method = "POST";
   // cpp-httplib would act upon other headers: it would compress responses again, decompress bodies without a
   // limit, and parse forms.
   std::erase_if(raw.headers, [](const auto& field) { return !is_framing_header(field.first); });
@@ -234,9 +234,9 @@ Body Session::read_body(const httplib::ContentReader& reader) {
 
 void Session::answer() {
   Exchange& now = *exchange_;
-  // HTTP/1.0 has no interim responses.
   try {
-    now.work.emplace(services_, connection_, now.client, now.minor_version == 1);
+    const bool probes = now.minor_version == 1;  // HTTP/1.0 has no interim responses
+    now.work.emplace(services_, connection_, now.client, probes);
     now.request.gone = now.work->gone.get_token();
     now.work->handler.emplace(services_.slots, now.client, now.request.gone, connection_.waiting());
     now.response = now.admitted.answer(now.request);

@@ -35,6 +35,10 @@ struct RenderService::Run {
   std::optional<Admission::Ticket> ticket = {};
 
   const Scene& scene() const { return order.scene->scene(); }
+  // Returns the seconds that the client has waited, including earlier steps of the request.
+  double waited_s(const Timer& timer) const {
+    return before_s + std::chrono::duration<double>(timer.now() - since).count();
+  }
   double time_limit_s() const { return *order.plan.asked.seconds; }  // 0: no time budget
 };
 
@@ -107,12 +111,15 @@ Films::LookupResult RenderService::obtain_film(Run& run, const std::stop_token& 
 
 Admission::Ticket RenderService::queue(Run& run, const SlotRequest& demand, const std::stop_token& stop) {
   const auto start = Clock::now();
+  Admission::Ticket ticket = run.time_limit_s() > 0 ? queue_with_time_limit(run, demand, stop)
+                                                    : services_.admission.enter(demand, stop);
+  run.trace.timing.queue += milliseconds_since(start);
+  return ticket;
+}
+
+Admission::Ticket RenderService::queue_with_time_limit(const Run& run, const SlotRequest& demand,
+                                                       const std::stop_token& stop) {
   const double seconds = run.time_limit_s();
-  if (seconds == 0) {
-    Admission::Ticket ticket = services_.admission.enter(demand, stop);
-    run.trace.timing.queue += milliseconds_since(start);
-    return ticket;
-  }
   std::stop_source late;
   const std::stop_callback forward(stop, [&] { late.request_stop(); });
   const auto alarm = services_.timer.at(
@@ -122,7 +129,6 @@ Admission::Ticket RenderService::queue(Run& run, const SlotRequest& demand, cons
   try {
     Admission::Ticket ticket = services_.admission.enter(demand, late.get_token());
     ticket.set_stop(stop);
-    run.trace.timing.queue += milliseconds_since(start);
     return ticket;
   } catch (const Cancelled&) {
     if (stop.stop_requested()) throw;
@@ -138,9 +144,7 @@ RenderResult RenderService::render_film(Run& run, FilmStorage storage, const std
   RenderControl control = limits_of(run.scene(), run.order.plan);
   control.background = run.demand.priority == Priority::batch;
   control.stop = stop;
-  control.used_s = [this, &run] {
-    return run.before_s + std::chrono::duration<double>(services_.timer.now() - run.since).count();
-  };
+  control.used_s = [this, &run] { return run.waited_s(services_.timer); };
   return TaskScope::current().memory->run(stop, [&] {
     return services_.render(*run.ticket, *run.order.scene, run.order.plan, storage, control);
   });
@@ -160,8 +164,7 @@ Picture RenderService::encode(Run& run, const Films::LookupResult& film) {
   picture.bytes.shrink_to_fit();  // it may be cached
   run.trace.timing.encode = milliseconds_since(start);
   if (picture.budget) {
-    picture.budget->end_at(run.before_s +
-                           std::chrono::duration<double>(services_.timer.now() - run.since).count());
+    picture.budget->end_at(run.waited_s(services_.timer));
     require_met(*picture.budget, picture.certificate);
   }
   return picture;

@@ -66,6 +66,9 @@ class RenderService {
   Picture make(Run& run, const std::stop_token& stop);
   Films::LookupResult obtain_film(Run& run, const std::stop_token& stop);
   Admission::Ticket queue(Run& run, const SlotRequest& demand, const std::stop_token& stop);
+  // Throws LimitExceeded if the time budget ends in the queue.
+  Admission::Ticket queue_with_time_limit(const Run& run, const SlotRequest& demand,
+                                          const std::stop_token& stop);
   RenderResult render_film(Run& run, FilmStorage storage, const std::stop_token& stop);
   Picture encode(Run& run, const Films::LookupResult& film);
 

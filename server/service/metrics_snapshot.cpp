@@ -31,6 +31,15 @@ ClientMetric histogram(const SecondsHistogram& seconds, Labels labels = {}) {
   return metric;
 }
 
+// Returns read(store) of each store, with the store's name as a label.
+template <class Read>
+std::vector<ClientMetric> per_store(App& app, const Read& read) {
+  return {value(read(app.scenes()), {{"store", "scenes"}}), value(read(app.assets()), {{"store", "assets"}}),
+          value(read(app.renders().pictures()), {{"store", "pictures"}}),
+          value(read(app.renders().films()), {{"store", "films"}}),
+          value(read(app.jobs()), {{"store", "jobs"}})};
+}
+
 double resident_bytes() {
   std::ifstream statm("/proc/self/statm");
   double size = 0, resident = 0;
@@ -119,21 +128,10 @@ std::vector<MetricFamily> collect_metrics(App& app, const HttpServer& server, co
        "Bytes of scenes that are not cached and of images in progress",
        kGauge,
        {value(app.memory().bytes())}},
-      {"orrery_stored_bytes",
-       "Bytes stored",
-       kGauge,
-       {value(scenes.bytes(), {{"store", "scenes"}}), value(app.assets().bytes(), {{"store", "assets"}}),
-        value(app.renders().pictures().bytes(), {{"store", "pictures"}}),
-        value(app.renders().films().bytes(), {{"store", "films"}}),
-        value(app.jobs().bytes(), {{"store", "jobs"}})}},
-      {"orrery_evictions_total",
-       "Entries evicted from a full store",
-       kCounter,
-       {value(scenes.evictions(), {{"store", "scenes"}}),
-        value(app.assets().evictions(), {{"store", "assets"}}),
-        value(app.renders().pictures().evictions(), {{"store", "pictures"}}),
-        value(app.renders().films().evictions(), {{"store", "films"}}),
-        value(app.jobs().evictions(), {{"store", "jobs"}})}},
+      {"orrery_stored_bytes", "Bytes stored", kGauge,
+       per_store(app, [](auto& store) { return store.bytes(); })},
+      {"orrery_evictions_total", "Entries evicted from a full store", kCounter,
+       per_store(app, [](auto& store) { return store.evictions(); })},
       {"orrery_reload_failures_total",
        "Failed reloads of tokens, keys and settings (SIGHUP)",
        kCounter,

@@ -48,7 +48,7 @@ async function compare({ title, file }, size) {
       showProgress(`cycles-threshold: ${asked}`);
       const ours = await renderers.ours({ error: asked, bounces: BOUNCES, seed: 1 });
       const theirs = await renderers.theirs({ threshold: asked, samples: 4096, bounces: BOUNCES, seed: 1 });
-      const { certificate, samples } = ours.told;
+      const { certificate, samples } = ours.stats;
       rows.push([
         asked,
         digits(certificate.total.rms),

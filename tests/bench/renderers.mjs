@@ -40,8 +40,8 @@ function renderOurs(scene, { samples, error, seed, bounces, size, out }) {
   const words = Object.entries(options).flatMap(([name, value]) => [`--${name}`, String(value)]);
   const done = spawnSync(ORRERY, ["render", scene, ...words, "--stats=json", "-o", out], { encoding: "utf8" });
   if (done.status !== 0) throw new Error(`${ORRERY} exited with status ${done.status}: ${done.stderr}`);
-  const told = JSON.parse(done.stdout);
-  return { cpuS: told.render_cpu_s, told };
+  const stats = JSON.parse(done.stdout);
+  return { cpuS: stats.render_cpu_s, stats };
 }
 
 // Returns {ours(order), theirs(order), stop()}. An order is {samples, seed, bounces, preset, threshold,
@@ -49,8 +49,8 @@ function renderOurs(scene, { samples, error, seed, bounces, size, out }) {
 //   bounces: maximum number of indirect bounces; 0 allows only direct light
 //   preset ("fair" or "defaults") and threshold (noise): for Cycles only
 //   error, in display values: replaces samples, for ours only
-// The result is {cpuS, picture}, where cpuS counts all threads and includes building. The result
-// of ours() also contains orrery's statistics as `told`.
+// Both return {cpuS, picture}, where cpuS counts all threads and includes building. ours() also returns
+// {stats}, the parsed output of --stats.
 export function startRenderers(scene, size) {
   const folder = mkdtempSync(join(tmpdir(), "renderers-"));
   const out = join(folder, "picture.exr");

@@ -106,7 +106,7 @@ async function tryAttack(service, paper, one, force, seconds) {
 }
 
 const worstOf = (tries, value) => tries.reduce((a, b) => (value(b) > value(a) ? b : a));
-const told = (one, text) => `${text} (${one.name})`;
+const withName = (one, text) => `${text} (${one.name})`;
 
 function rowsOf(tries) {
   const picture = worstOf(tries, (t) => t.picture);
@@ -118,26 +118,26 @@ function rowsOf(tries) {
     row(
       "p99 of small images, worst attack",
       `<= ${PICTURE_MS} ms`,
-      told(picture, ms(picture.picture)),
+      withName(picture, ms(picture.picture)),
       picture.picture <= PICTURE_MS,
     ),
     row("small images not answered with 200", "0", bad.length ? tally(bad.map(outcome)) : "0", bad.length === 0),
     row(
       "frames received by a viewer, worst attack",
       ">= 50 %",
-      told(frames, percent(frames.frames)),
+      withName(frames, percent(frames.frames)),
       frames.frames >= 0.5,
     ),
     row(
       "p99 of /healthz, worst attack",
       `<= ${HEALTH_MS} ms`,
-      told(health, ms(health.health)),
+      withName(health, ms(health.health)),
       health.health <= HEALTH_MS,
     ),
     row(
       "maximum resident memory, worst attack",
       `<= ${mib(resident.bound)}`,
-      told(resident, mib(resident.resident)),
+      withName(resident, mib(resident.resident)),
       resident.resident <= resident.bound,
     ),
   ];

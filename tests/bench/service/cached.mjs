@@ -53,8 +53,8 @@ async function run({ seconds }) {
     const limits = await measure("/v1/limits", {});
     const notModified = await measure(picture, { "If-None-Match": etag });
     const whole = await measure(picture, {});
-    const told = ({ rate, bad }) => `${Math.round(rate)}/s${bad ? ` (${bad})` : ""}`;
-    const relative = (one) => `${told(one)}, ${(one.rate / icon.rate).toFixed(2)} x the rate of /favicon.svg`;
+    const shown = ({ rate, bad }) => `${Math.round(rate)}/s${bad ? ` (${bad})` : ""}`;
+    const relative = (one) => `${shown(one)}, ${(one.rate / icon.rate).toFixed(2)} x the rate of /favicon.svg`;
     return {
       rows: [
         row(
@@ -69,7 +69,7 @@ async function run({ seconds }) {
           relative(whole),
           whole.rate >= WHOLE,
         ),
-        row("/favicon.svg", "", told(icon), null),
+        row("/favicon.svg", "", shown(icon), null),
         row("/v1/limits", "", relative(limits), null),
       ],
       remark: `${CONNECTIONS} connections of ${hasWrk ? "wrk" : "the JavaScript client"}`,

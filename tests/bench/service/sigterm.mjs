@@ -58,13 +58,13 @@ async function run({ times }) {
   const after = ends.flatMap((end) => end.after);
   const kept = after.filter(({ first }) => !first);
   const inTime = ends.every(({ code, took }) => code === 0 && took <= 1000 * GRACE_S);
-  const told = ends.filter(({ said }) => said.includes("503 draining")).length;
-  const toldWrong = ends
+  const draining = ends.filter(({ said }) => said.includes("503 draining")).length;
+  const laterStatuses = ends
     .flatMap(({ said }) => said.slice(said.indexOf("503 draining")))
     .filter((s) => s !== "503 draining");
   const slowest = most(ends.map(({ took }) => took));
   const exits = `${tally(ends.map(({ code }) => `exit ${code}`))}; at most ${ms(slowest)}`;
-  const ready = `${told} of ${times}${toldWrong.length > 0 ? `; later: ${tally(toldWrong)}` : ""}`;
+  const ready = `${draining} of ${times}${laterStatuses.length > 0 ? `; later: ${tally(laterStatuses)}` : ""}`;
   return {
     rows: [
       wholeRow(
@@ -76,7 +76,12 @@ async function run({ times }) {
         after.filter(({ first }) => first),
       ),
       row(`exit status 0 within ${GRACE_S} s, ${times} times`, "all", exits, inTime),
-      row("/readyz: 503 draining from the signal to the exit", "all", ready, told === times && toldWrong.length === 0),
+      row(
+        "/readyz answers 503 draining after the signal, and nothing else before the exit",
+        "all",
+        ready,
+        draining === times && laterStatuses.length === 0,
+      ),
     ],
     // Without target: a server may close a keep-alive connection between requests (RFC 9112, 9.3.1).
     remark: `requests after the signal, old connections: ${tally(kept.map(outcome))}`,

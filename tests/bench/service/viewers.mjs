@@ -45,9 +45,9 @@ function watchSlowly(port, path) {
   }, 100);
   return () => {
     clearInterval(timer);
-    const told = { bytes, cutS };
+    const seen = { bytes, cutS };
     socket.destroy();
-    return told;
+    return seen;
   };
 }
 
