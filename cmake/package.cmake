@@ -1,4 +1,4 @@
-# Installation of the man page, shell completion and systemd unit, and the Debian package.
+# Installation of the man page, shell completions and systemd unit, and the Debian package.
 
 # The unit names the program, whose prefix is known at installation.
 install(CODE "
@@ -6,6 +6,7 @@ install(CODE "
   configure_file(\"${PROJECT_SOURCE_DIR}/packaging/orrery.service.in\"
     \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/lib/systemd/system/orrery.service\" @ONLY)")
 install(FILES packaging/orrery.bash RENAME orrery DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+install(FILES packaging/orrery.zsh RENAME _orrery DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
 install(FILES CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # The man page contains the help, so the program must run on this machine.

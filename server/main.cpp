@@ -11,5 +11,5 @@ const char* malloc_conf =
     "background_thread:true,dirty_decay_ms:1000,muzzy_decay_ms:0";
 #endif
 
-// The code is in liborrery.so. The dynamic loader picks the build for this CPU.
+// The dynamic loader picks the build of liborrery.so, the core library, for this CPU.
 int main(int argc, char** argv) { return orrery::run(argc, argv); }

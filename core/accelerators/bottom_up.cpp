@@ -78,7 +78,7 @@ class BottomUpBuilder {
     std::vector<std::uint32_t> next;
     next.reserve(line_.size());
     for (int i = 0; i < count; ++i) {
-      interruption_point(static_cast<std::size_t>(i));
+      checkpoint(static_cast<std::size_t>(i));
       const int j = nearest[static_cast<std::size_t>(i)];
       const bool mutual = nearest[static_cast<std::size_t>(j)] == i;
       if (!mutual) next.push_back(at(i));
@@ -129,7 +129,7 @@ class BottomUpBuilder {
 
   // Stores the subtree of a group at tree node `node`.
   void fill(std::size_t node, std::uint32_t group, int depth) {
-    interruption_point();
+    checkpoint();
     const Group& g = groups_[group];
     tree_.nodes[node].box = g.box;
     const bool leaf = g.count <= static_cast<std::uint32_t>(kBlock<T>) && g.kernel != kMixed;

@@ -23,7 +23,7 @@ std::vector<TreeItem<T>> items_of(const PrimitiveList<T>& primitives) {
   const ShapeKernel<T>* last = nullptr;
   std::uint32_t kernel = 0;  // counts runs; primitives of one kernel are adjacent in the list
   for (std::size_t i = 0; i < primitives.size(); ++i) {
-    interruption_point(i);
+    checkpoint(i);
     if (primitives[i].kernel != last) ++kernel;
     last = primitives[i].kernel;
     if (!primitives[i].bounds.bounded()) continue;

@@ -35,7 +35,7 @@ class GridTree {
       Level next;
       std::span<const std::uint32_t> rest = level.items;
       for (const LevelCell& open : level.cells) {
-        interruption_point();
+        checkpoint();
         const PendingCell cell{open.box, rest.first(open.items), depth, open.cell};
         rest = rest.subspan(open.items);
         if (!divide(cell, items, left, next)) add_cell(cell, items, primitives);
@@ -89,7 +89,7 @@ class GridTree {
   static Bounds<T> around(const PendingCell& cell, const std::vector<TreeItem<T>>& items) {
     Bounds<T> box;
     for (const std::uint32_t item : cell.items) {
-      interruption_point(item);
+      checkpoint(item);
       Bounds<T> part = items[item].box;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         part.lo[axis] = std::max(part.lo[axis], cell.box.lo[axis]);
@@ -112,7 +112,7 @@ class GridTree {
       const GridLayout<T> layout(box, cells);
       std::size_t made = 0;
       for (const std::uint32_t item : cell.items) {
-        interruption_point();
+        checkpoint();
         layout.for_each_touching(items[item].box, [&](const CellIndex&) { ++made; });
       }
       const bool shared = cell.level > 0 && made > 4 * count;
@@ -133,7 +133,7 @@ class GridTree {
     grids_.push_back({layout, first});
     const auto for_each_item_in_cell = [&](const auto& visit) {
       for (const std::uint32_t item : cell.items) {
-        interruption_point();
+        checkpoint();
         layout.for_each_touching(items[item].box, [&](const CellIndex& i) { visit(layout.number(i), item); });
       }
     };

@@ -18,7 +18,7 @@ class MedianSplitter {
     const std::size_t axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     std::vector<double> centers;
     for (const std::uint32_t item : cell.items) {
-      interruption_point(item);
+      checkpoint(item);
       const Bounds<T>& box = items_[item].box;
       centers.push_back((double{box.lo[axis]} + double{box.hi[axis]}) / 2);
     }
@@ -32,7 +32,7 @@ class MedianSplitter {
   std::size_t cut(const SpaceCell<T>& cell, std::size_t axis, double at) const {
     std::size_t count = 0;
     for (const std::uint32_t item : cell.items) {
-      interruption_point(item);
+      checkpoint(item);
       const Bounds<T>& box = items_[item].box;
       count += box.lo[axis] <= static_cast<T>(at) && box.hi[axis] >= static_cast<T>(at);
     }

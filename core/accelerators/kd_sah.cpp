@@ -43,7 +43,7 @@ class SurfaceSplitter {
       return static_cast<std::size_t>(std::clamp((at - lo) / step, 0.0, double(kBins - 1)));
     };
     for (const std::uint32_t item : cell.items) {
-      interruption_point(item);
+      checkpoint(item);
       ++starts[bin(items_[item].box.lo[axis])];
       ++ends[bin(items_[item].box.hi[axis])];
     }

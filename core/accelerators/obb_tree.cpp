@@ -76,7 +76,7 @@ class OrientedTree {
   // to `hull`. Returns the moments of these triangles.
   SurfaceMoments fill(std::size_t me, const BoxTree<T>& tree, std::uint32_t at,
                       const PrimitiveList<T>& primitives, int level, std::vector<HullTriangle>& hull) {
-    interruption_point();
+    checkpoint();
     depth_ = std::max(depth_, level);
     const auto& node = tree.nodes[at];
     const std::size_t first = hull.size();

@@ -29,7 +29,7 @@ class OctantSplitter {
     const Vec3<T> middle = (cell.box.lo + cell.box.hi) * T(0.5);
     std::size_t copies = 0;
     for (const std::uint32_t item : cell.items) {
-      interruption_point(item);
+      checkpoint(item);
       const Bounds<T>& box = items_[item].box;
       std::size_t octants = 1;
       for (std::size_t axis = 0; axis < 3; ++axis)

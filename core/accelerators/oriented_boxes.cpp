@@ -47,7 +47,7 @@ class PerPrimitiveObb {
   };
 
   void add(const PrimitiveList<T>& primitives, std::uint32_t place) {
-    interruption_point();
+    checkpoint();
     const auto hull = hull_of(primitives[place]);
     SurfaceMoments moments;
     for (const auto& triangle : hull) moments.add(triangle);

@@ -11,7 +11,7 @@
 //
 // Errors: building and refitting throw Cancelled, std::bad_alloc, and InputError with pointer
 // "/render/accelerator" if a shape type has more than 2^26 blocks of primitives. Traversal has no
-// interruption points. It throws only std::bad_alloc, because some structures allocate temporary batches.
+// checkpoints. It throws only std::bad_alloc, because some structures allocate temporary batches.
 namespace orrery {
 
 // Returns all types of acceleration structures, in the order of the schemas. The span is valid until the

@@ -77,7 +77,7 @@ class SahBuilder {
     BoxLanes<T> box, centers;
     bool mixed = false;
     for (std::uint32_t i = from; i < to; ++i) {
-      interruption_point(i);
+      checkpoint(i);
       const TreeItem<T>& item = tree_.items[i];
       const auto lanes = BoxLanes<T>::of(item);
       box.include(lanes);
@@ -134,7 +134,7 @@ class SahBuilder {
     Bins bins;
     std::fill_n(bins.begin(), used, std::array<Bin, 3>{});
     for (std::uint32_t i = from; i < to; ++i) {
-      interruption_point(i);
+      checkpoint(i);
       const auto lanes = BoxLanes<T>::of(tree_.items[i]);
       const Sides places = min_first(max_first(zero, scale.places(lanes)), Sides(T(used - 1)));
       for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -46,7 +46,7 @@ class SpaceTree {
       Level next;
       std::span<const std::uint32_t> rest = level.items;
       for (const LevelCell& open : level.cells) {
-        interruption_point();
+        checkpoint();
         const SpaceCell<T> cell{open.box, rest.first(open.items), depth_, open.node};
         rest = rest.subspan(open.items);
         if (const auto plane = splitter.split(cell); plane && divide(cell, *plane, items, left, next))
@@ -136,7 +136,7 @@ class SpaceTree {
     const std::size_t first = next.items.size();
     const auto add_items = [&](const auto& reaches) {
       for (const std::uint32_t item : cell.items) {
-        interruption_point(item);
+        checkpoint(item);
         if (reaches(items[item].box)) next.items.push_back(item);
       }
       return next.items.size();

@@ -97,7 +97,7 @@ class WideTree {
   static constexpr T kInfinite = std::numeric_limits<T>::infinity();
 
   Child convert(const BoxTree<T>& tree, std::uint32_t at, const PrimitiveList<T>& primitives, int level) {
-    interruption_point();
+    checkpoint();
     depth_ = std::max(depth_, level);
     if (tree.nodes[at].leaf) return add_leaf(tree, tree.nodes[at], primitives);
     const Children children = children_of(tree, at);
@@ -154,7 +154,7 @@ class WideTree {
   // Computes relative_surface_area_ and mean_leaf_extent_. `held` is the total half area of the primitives'
   // boxes.
   void measure(double held) {
-    interruption_point();
+    checkpoint();
     double area = 0, sides = 0;
     std::size_t leaves = 0;
     const auto add = [&](Child child, const Bounds<T>& box) {

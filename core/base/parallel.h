@@ -32,7 +32,7 @@ class TsanFence {
 };
 
 // Calls act(0), ..., act(count - 1) in any order and concurrently, in chunks of at least `grain` / 2 calls.
-// Each chunk starts with an interruption point. Once a call throws, no more chunks start. One of the
+// Each chunk starts with a checkpoint. Once a call throws, no more chunks start. One of the
 // exceptions is rethrown to the caller after the running chunks have ended.
 template <class Act>
 void parallel_for_each(std::size_t count, std::size_t grain, const Act& act) {
@@ -41,7 +41,7 @@ void parallel_for_each(std::size_t count, std::size_t grain, const Act& act) {
   const TaskContext work = TaskScope::current();
   const auto some_of = [&](const Range& some) {
     const TaskScope scope(work);
-    interruption_point();
+    checkpoint();
     for (std::size_t i = some.begin(); i != some.end(); ++i) act(i);
   };
   to_workers.release();

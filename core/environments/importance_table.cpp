@@ -47,7 +47,7 @@ ImportanceTable::ImportanceTable(int width, int height, std::span<const float> w
   append_ends(rows, sum, row_ends_);
   column_ends_.reserve(weights.size());
   for (int row = 0; row < height; ++row) {
-    interruption_point();
+    checkpoint();
     const double of_row = rows[static_cast<std::size_t>(row)];
     append_ends(weights.subspan(static_cast<std::size_t>(row) * columns, columns), of_row > 0 ? of_row : 1,
                 column_ends_);

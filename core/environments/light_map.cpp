@@ -20,7 +20,7 @@ std::vector<float> weights_of(const Texels& picture, LightMap::Weights weights) 
   double light = 0, sines = 0;
   const auto for_each_row = [&](const auto& visit) {
     for (int row = 0; row < picture.height; ++row) {
-      interruption_point();
+      checkpoint();
       visit(picture.rgb.data() + static_cast<std::size_t>(row) * width * 3, sine_of(row, picture.height));
     }
   };
@@ -52,7 +52,7 @@ LightMap::LightMap(const Texels& picture, Weights weights)
   texels_.reserve(picture.rgb.size() / 3);
   const float* rgb = picture.rgb.data();
   for (int row = 0; row < picture.height; ++row) {
-    interruption_point();
+    checkpoint();
     for (int column = 0; column < picture.width; ++column, rgb += 3)
       texels_.push_back(
           {rgb[0], rgb[1], rgb[2], sampled() ? static_cast<float>(table_.probability({column, row})) : 0.0f});

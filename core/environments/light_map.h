@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "core/environments/importance_table.h"
+#include "core/image/decode/picture.h"
 #include "core/math/elementary.h"
 #include "core/math/vec3.h"
-#include "core/pictures/picture.h"
 
 namespace orrery {
 

@@ -40,7 +40,7 @@ struct Extents {
 
  private:
   void add(const ShapeSet& shapes, int index, int number) {
-    interruption_point(static_cast<std::size_t>(index));
+    checkpoint(static_cast<std::size_t>(index));
     const ShapeSet::SweptBounds reach = shapes.reach(index);
     const bool is_bounded = reach.box.bounded();
     const double coordinate = is_bounded ? reach.box.magnitude() : shapes.anchor_magnitude(index);

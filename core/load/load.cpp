@@ -96,7 +96,7 @@ class ObjectReader {
   }
 
   void read(Params& p, const Names& materials, MeshSource& meshes) {
-    interruption_point();
+    checkpoint();
     const auto type = p.pick("type", "Shape type.", choices_of(shape_types()));
     if (!type) return;
     const std::size_t material = p.reference("material", "Name of the material.", materials);
@@ -149,7 +149,7 @@ Placement read_key(Params& p, const Placement& rest) {
 }
 
 Instance read_placement(Params& p, std::size_t model) {
-  interruption_point();
+  checkpoint();
   Instance instance{model, Vec3d(0, 1, 0), {}};
   Placement rest;
   rest.scale = read_scale(p, Vec3d(1));

@@ -146,7 +146,7 @@ class LayerGapSearch {
     const std::size_t most = std::max(kFewestRays, kManyRays / std::max<std::size_t>(1, placed_.size()));
     for (std::size_t round = 0; round < most; ++round) {
       for (std::size_t i = 0; i < placed_.size(); ++i) {
-        interruption_point();
+        checkpoint();
         if (rays[i].empty() || probe_.tests() > max_tests_) continue;
         const std::size_t chosen = round * ((rays[i].size() + most - 1) / most);
         if (chosen < rays[i].size()) look_around(placed_[i], rays[i][chosen], mirrors_[placed_[i].object]);
@@ -161,7 +161,7 @@ class LayerGapSearch {
   // part: the first ray passes through the middle of the intersection of both boxes.
   void measure_pairs(bool moving_alone) {
     for (std::size_t i = 0; i < placed_.size(); ++i) {
-      interruption_point();
+      checkpoint();
       for (std::size_t k = i + 1; k < placed_.size() && probe_.tests() < max_tests_; ++k)
         if (!moving_alone || placed_[i].moves || placed_[k].moves) measure_pair(placed_[i], placed_[k]);
     }

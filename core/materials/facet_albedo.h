@@ -26,7 +26,7 @@ FacetAlbedo<double> facet_albedo(double alpha, double scale, const Share& share)
   const Ggx<double> facets{alpha};
   std::array<double, kTerms> values{};
   for (std::size_t k = 0; k < kTerms; ++k) {
-    interruption_point();
+    checkpoint();
     const double mu = series_node<kTerms>(scale, k);
     const Vec3d viewer(std::sqrt(1 - mu * mu), 0, mu);
     const auto seen = [&](double light) {

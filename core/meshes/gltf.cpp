@@ -116,7 +116,7 @@ class SceneReader {
     const GltfNumbers positions = file_.accessor(attributes.at("POSITION"), "VEC3");
     check_vertices(mesh_.positions.size() + positions.count, limits_);
     for (std::size_t i = 0; i < positions.count; ++i) {
-      interruption_point(i);
+      checkpoint(i);
       const Vec3d p =
           world_from_node.point({positions.value(i, 0), positions.value(i, 1), positions.value(i, 2)});
       if (!is_position(p)) attributes.fail(position_problem(p, " at vertex " + std::to_string(i)));
@@ -125,7 +125,7 @@ class SceneReader {
     const auto normals = optional_accessor(attributes, "NORMAL", "VEC3", positions.count);
     all_normals_ = all_normals_ && normals;
     for (std::size_t i = 0; all_normals_ && i < positions.count; ++i) {
-      interruption_point(i);
+      checkpoint(i);
       const Vec3d n(normals->value(i, 0), normals->value(i, 1), normals->value(i, 2));
       const Vec3d turned = transformed_normal(world_from_node, n);
       if (!is_finite(turned))
@@ -136,7 +136,7 @@ class SceneReader {
     const auto uvs = optional_accessor(attributes, "TEXCOORD_0", "VEC2", positions.count);
     all_uvs_ = all_uvs_ && uvs;
     for (std::size_t i = 0; all_uvs_ && i < positions.count; ++i) {
-      interruption_point(i);
+      checkpoint(i);
       const double u = uvs->value(i, 0), v = uvs->value(i, 1);
       if (!std::isfinite(u) || !std::isfinite(v))
         attributes.fail("texture coordinates must be finite (got (" + text_of(u) + ", " + text_of(v) +
@@ -164,7 +164,7 @@ class SceneReader {
     std::vector<std::uint32_t> indices;
     indices.reserve(numbers.count);
     for (std::size_t i = 0; i < numbers.count; ++i) {
-      interruption_point(i);
+      checkpoint(i);
       const double index = numbers.value(i, 0);
       if (!(index >= 0 && index < count && index == std::floor(index)))
         user.fail("indices must be integers >= 0 and < " + std::to_string(mesh_.positions.size() - first) +
@@ -183,7 +183,7 @@ class SceneReader {
     const std::size_t count = mode == 4 ? n / 3 : n - 2;
     check_triangles(mesh_.triangles.size() + count, limits_);
     for (std::size_t i = 0; i < count; ++i) {
-      interruption_point(i);
+      checkpoint(i);
       std::array<std::size_t, 3> corners = {3 * i, 3 * i + 1, 3 * i + 2};
       if (mode == 5) corners = {i, i + 1 + i % 2, i + 2 - i % 2};  // strips alternate orientation
       if (mode == 6) corners = {i + 1, i + 2, 0};

@@ -86,7 +86,7 @@ class GltfBuilder final : public nlohmann::json_sax<nlohmann::json> {
   }
   void count_value() {
     check_depth();
-    interruption_point(values_++);
+    checkpoint(values_++);
     if (values_ > kMaxValues)
       throw InputError("", "document has more than " + grouped(kMaxValues) + " JSON values (limit " +
                                grouped(kMaxValues) + ")");

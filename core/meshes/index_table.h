@@ -28,7 +28,7 @@ class IndexTable {
   // `size` is the current number of entries, below 2^31.
   template <class Same>
   std::uint32_t find_or_add(std::uint32_t hash, std::size_t size, const Same& same) {
-    interruption_point();
+    checkpoint();
     if (2 * (size + 1) > slots_.size()) grow();
     std::size_t at = first_slot(hash);
     for (; slots_[at].entry != kNone; at = (at + 1) & (slots_.size() - 1))

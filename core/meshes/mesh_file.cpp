@@ -31,13 +31,13 @@ std::string_view without_byte_order_mark(std::string_view bytes) {
 void finish_normals(TriangleMesh& mesh) {
   std::vector<std::size_t> missing;
   for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
-    interruption_point(i);
+    checkpoint(i);
     mesh.normals[i] = safe_normalize(mesh.normals[i]);
     if (mesh.normals[i] == Vec3d()) missing.push_back(i);
   }
   if (missing.empty()) return;
   for (const auto& t : mesh.triangles) {
-    interruption_point();
+    checkpoint();
     const Vec3d &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
     const Vec3d area = cross(b - a, c - a);
     for (const std::uint32_t i : t)

@@ -123,7 +123,7 @@ class PlyReader {
   }
 
   void add_vertex(const std::array<double, kSlots>& values) {
-    interruption_point(mesh_.positions.size());
+    checkpoint(mesh_.positions.size());
     const Vec3d position(values[kX], values[kY], values[kZ]), normal(values[kNx], values[kNy], values[kNz]);
     const auto number = [&] { return std::to_string(mesh_.positions.size()); };
     if (!is_position(position)) body_.fail(position_problem(position, " for vertex " + number()));
@@ -157,7 +157,7 @@ class PlyReader {
     const auto value = body_.describe(property.type);
     std::array<std::uint32_t, 3> fan{};
     for (std::uint64_t i = 0; i < count; ++i) {
-      interruption_point(face + i);
+      checkpoint(face + i);
       const double index = body_.read(value);
       if (!(index >= 0 && index < static_cast<double>(vertices_) && index == std::floor(index)))
         body_.fail("vertex of face " + std::to_string(face) + " must be an integer >= 0 and < " +
@@ -179,7 +179,7 @@ class PlyReader {
   void skip_list(const PlyProperty& property) {
     const auto value = body_.describe(property.type);
     for (std::uint64_t left = list_length(property); left > 0; --left) {
-      interruption_point(left);
+      checkpoint(left);
       body_.skip(value);
     }
   }
@@ -190,7 +190,7 @@ class PlyReader {
       body_.skip(body_.describe(property.type));
   }
   void skip_row(const PlyElement& element) {
-    interruption_point();
+    checkpoint();
     for (const PlyProperty& property : element.properties) skip_property(property);
   }
 

@@ -7,7 +7,7 @@ namespace orrery {
 
 std::size_t drop_degenerate(TriangleMesh& mesh) {
   return std::erase_if(mesh.triangles, [&](const auto& t) {
-    interruption_point();
+    checkpoint();
     const Vec3d &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
     return face_normal(a, b, c) == Vec3d();
   });
@@ -20,7 +20,7 @@ void drop_unused(TriangleMesh& mesh) {
     for (const std::uint32_t vertex : triangle) place[vertex] = 0;
   std::uint32_t kept = 0;
   for (std::size_t v = 0; v < place.size(); ++v) {
-    interruption_point(v);
+    checkpoint(v);
     if (place[v] == kUnused) continue;
     place[v] = kept;
     mesh.positions[kept] = mesh.positions[v];

@@ -55,7 +55,7 @@ struct Facets {
     normals.reserve(mesh.triangles.size());
     weighted.reserve(3 * mesh.triangles.size());
     for (const auto& t : mesh.triangles) {
-      interruption_point();
+      checkpoint();
       const Vec3d &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
       const Vec3d normal = face_normal(a, b, c);
       const Vec3d ab = safe_normalize(b - a), bc = safe_normalize(c - b), ca = safe_normalize(a - c);
@@ -75,7 +75,7 @@ Vec3d corner_normal(std::uint32_t corner, const Corners& corners, const Facets& 
   const std::uint32_t position = corners.position[corner];
   Vec3d sum;
   for (std::uint32_t i = corners.first[position]; i < corners.first[position + 1]; ++i) {
-    interruption_point(i);
+    checkpoint(i);
     const std::uint32_t other = corners.list[i];
     if (flat || other == corner || dot(own, facets.normals[other / 3]) > min_cosine)
       sum = sum + facets.weighted[other];

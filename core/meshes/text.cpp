@@ -31,7 +31,7 @@ bool TextReader::joins_at(std::size_t i) const {
 }
 
 std::string_view TextReader::word_of_line() {
-  interruption_point();
+  checkpoint();
   std::size_t from = 0;
   while (from < rest_.size()) {
     if (is_blank(rest_[from])) {
@@ -52,7 +52,7 @@ std::string_view TextReader::word_of_line() {
 }
 
 std::string_view TextReader::word() {
-  interruption_point();
+  checkpoint();
   std::size_t from = 0;
   while (from < rest_.size() && static_cast<unsigned char>(rest_[from]) <= ' ') {
     if (is_line_end(rest_[from])) {
@@ -71,7 +71,7 @@ std::string_view TextReader::word() {
 }
 
 bool TextReader::next_line(bool may_join) {
-  interruption_point();
+  checkpoint();
   while (!rest_.empty()) {
     const std::size_t end = rest_.find_first_of("\r\n");
     if (end == std::string_view::npos) {

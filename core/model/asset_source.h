@@ -5,8 +5,8 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "core/image/decode/picture.h"
 #include "core/meshes/mesh_file.h"
-#include "core/pictures/picture.h"
 
 namespace orrery {
 

@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "core/base/checkpoint.h"
 #include "core/model/channel.h"
 #include "core/model/counts.h"
 #include "core/model/draws.h"
@@ -32,10 +31,10 @@ class Tracer {
  public:
   virtual ~Tracer() = default;
   // Traces the camera rays and all rays that they spawn. Inactive rays count as rays that miss everything.
-  // `draws` returns the random numbers of the sample. Polls `checkpoint`. Returns false, with undefined
-  // results, if the work is cancelled.
-  virtual bool trace(const RayBatch<T>& camera_rays, const Draws& draws, TraceResult<T>& out,
-                     TraceCounts& counts, const Checkpoint& checkpoint = {}) = 0;
+  // `draws` returns the random numbers of the sample. Calls checkpoint(). After an exception, the results are
+  // undefined.
+  virtual void trace(const RayBatch<T>& camera_rays, const Draws& draws, TraceResult<T>& out,
+                     TraceCounts& counts) = 0;
 
   // Returns true if trace() omits the directly visible emission and background. The caller then adds both by
   // trace_emission_only(), with separate camera rays. Emitters have the sharpest edges of an image, and

@@ -48,7 +48,7 @@ class Document {
 
 // Parses one JSON text (RFC 8259, UTF-8). Throws MalformedJson if the text is not JSON: NaN, Infinity,
 // comments and invalid UTF-8 are rejected. Throws InputError for duplicate keys, for numbers beyond the range
-// of double (1e999) and for an exceeded limit. Calls interruption_point(), which throws Cancelled.
+// of double (1e999) and for an exceeded limit. Calls checkpoint(), which throws Cancelled.
 // Thread-safe.
 Document parse_document(std::string_view text, const JsonLimits& limits = {});
 

@@ -141,7 +141,7 @@ class TreeBuilder {
   }
 
   json* put(json value) {
-    interruption_point(nodes_);
+    checkpoint(nodes_);
     if (++nodes_ > limits_.nodes) {
       throw InputError(next_pointer(), "document has more than " + grouped(limits_.nodes) +
                                            " JSON values (limit " + grouped(limits_.nodes) + ", json_nodes)");

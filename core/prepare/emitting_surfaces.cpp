@@ -52,7 +52,7 @@ class EmitterList {
 
   // Advances primitive_ to the next emitting primitive. Returns false if there is none before `last`.
   bool skip_to_emitter(std::size_t last) {
-    while (primitive_ < last && radiance_of(primitive_) == Vec3d(0)) interruption_point(++primitive_);
+    while (primitive_ < last && radiance_of(primitive_) == Vec3d(0)) checkpoint(++primitive_);
     return primitive_ < last;
   }
 
@@ -60,7 +60,7 @@ class EmitterList {
   bool emits_at_most(std::size_t most) const {
     std::size_t count = 0;
     for (std::size_t p = primitive_; p < scene_.material_of.size() && count <= most; ++p) {
-      interruption_point(p);
+      checkpoint(p);
       count += radiance_of(p) != Vec3d(0);
     }
     return count <= most;
@@ -70,7 +70,7 @@ class EmitterList {
   // exposure. world_from_model is null if the set is not part of an instance.
   void add(const ShapeSet& shapes, const ShapeSet& now, std::size_t last, const Affined* world_from_model) {
     for (int i = now.size() - static_cast<int>(last - primitive_); primitive_ < last; ++i, ++primitive_) {
-      interruption_point(primitive_);
+      checkpoint(primitive_);
       if (radiance_of(primitive_) == Vec3d(0)) continue;
       const bool moves = !exposure_.instant() && shapes.moves(i);
       const auto emitter = moves ? std::nullopt : emitter_of(now, i, world_from_model);

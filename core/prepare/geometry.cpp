@@ -5,8 +5,8 @@
 #include "core/accelerators/moving_instances.h"
 #include "core/accelerators/static_and_moving_bvh.h"
 #include "core/base/task_scope.h"
+#include "core/lighting/light_tree.h"
 #include "core/prepare/emitting_surfaces.h"
-#include "core/stages/light_tree.h"
 
 namespace orrery {
 namespace {
@@ -29,7 +29,7 @@ void add_shapes(const ShapeSets& sets, const Exposure& exposure, const std::vect
     const auto moving_parts = exposure.instant() ? nullptr : shapes->during(exposure);
     if (moving_parts) moving.push_back(moving_parts->kernel(T(), number));
     for (int i = 0; i < now.size(); ++i) {
-      interruption_point(static_cast<std::size_t>(i));
+      checkpoint(static_cast<std::size_t>(i));
       if (moving_parts && shapes->moves(i))
         primitives.push_back({moving.back().get(), i, moving_parts->bounds(i)});
       else
@@ -97,7 +97,7 @@ void add_instances(const Scene& scene, const AcceleratorType& inner, const Expos
   };
   std::vector<Member> members;
   for (const Instance& instance : scene.instances) {
-    interruption_point();
+    checkpoint();
     const auto& model = geometry.models[instance.model];
     const Affined world_from_model = instance.world_from_model(exposure.opens);
     const bool moves =

@@ -5,6 +5,7 @@
 
 #include "core/base/clock.h"
 #include "core/base/error.h"
+#include "core/base/task_scope.h"
 #include "core/prepare/geometry.h"
 
 namespace orrery {
@@ -33,18 +34,6 @@ World<T> world_before(const Moments<T>& moments, const AcceleratorType& type) {
   return {};
 }
 
-// Opens a memory account for a build, with the source of the current account, and drops the accounts of
-// evicted data. Returns null if memory is not counted.
-std::shared_ptr<MemoryAccount> open_account(PreparedScene::Parts& parts) {
-  const MemoryAccount* const client = TaskScope::current().memory;
-  if (!client) return nullptr;
-  const auto account = client->open_another();
-  const TaskScope nobody({});
-  const std::lock_guard lock(parts.accounts_mutex);
-  std::erase_if(parts.built, [](const auto& some) { return some->bytes() == 0; });
-  return parts.built.emplace_back(account);
-}
-
 }  // namespace
 
 template <class T>
@@ -63,10 +52,10 @@ World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& type, con
     if (!geometry) geometry = make_geometry<T>(parts.scene, type, exposure, before.geometry.get());
     world = {geometry, build_or_refit(type, geometry->primitives, before.accelerator.get())};
   };
-  const auto memory = open_account(parts);
-  const TaskScope scope({nullptr, &stop});  // no time slice, because the owner of the mutex must not yield
-  if (memory)
-    memory->run(stop, make);
+  // No time slice, because the owner of the mutex must not yield.
+  const TaskScope scope({TaskScope::current().memory, &stop});
+  if (parts.run_build)
+    parts.run_build(make);
   else
     make();
   build_ms += milliseconds_since(start);
@@ -83,36 +72,12 @@ std::unique_lock<StoppableMutex> lock_unless(StoppableMutex& mutex, const std::s
   return {mutex, std::adopt_lock};
 }
 
-PreparedScene::PreparedScene(std::shared_ptr<const Scene> scene) : parts_(std::make_unique<Parts>()) {
+PreparedScene::PreparedScene(std::shared_ptr<const Scene> scene, RunBuild run_build)
+    : parts_(std::make_unique<Parts>()) {
   parts_->scene = std::move(scene);
-  if (MemoryAccount* const memory = TaskScope::current().memory) {
-    parts_->loaded = memory->shared_from_this();
-    parts_->loaded_bytes = memory->bytes();
-  }
+  parts_->run_build = std::move(run_build);
 }
 PreparedScene::~PreparedScene() = default;
-
-std::shared_ptr<const PreparedScene> PreparedScene::without_built() const {
-  const auto fresh = std::make_shared<PreparedScene>(parts_->scene);
-  fresh->parts_->loaded = parts_->loaded;
-  fresh->parts_->loaded_bytes = parts_->loaded_bytes;
-  return fresh;
-}
-
-std::size_t PreparedScene::loaded_bytes() const { return parts_->loaded_bytes; }
-
-std::size_t PreparedScene::bytes() const {
-  std::size_t bytes = parts_->loaded_bytes;
-  const std::lock_guard lock(parts_->accounts_mutex);
-  for (const auto& account : parts_->built) bytes += account->bytes();
-  return bytes;
-}
-
-void PreparedScene::settle(bool loaded, bool built) const {
-  if (parts_->loaded) parts_->loaded->settle(loaded ? parts_->loaded->bytes() : 0);
-  const std::lock_guard lock(parts_->accounts_mutex);
-  for (const auto& account : parts_->built) account->settle(built ? account->bytes() : 0);
-}
 
 const Scene& PreparedScene::scene() const { return *parts_->scene; }
 std::shared_ptr<const Scene> PreparedScene::shared_scene() const { return parts_->scene; }

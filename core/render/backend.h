@@ -5,11 +5,10 @@
 #include <span>
 #include <stop_token>
 
-#include "core/model/counts.h"
+#include "core/accuracy/render_stats.h"
 #include "core/model/film.h"
-#include "core/render/film_error.h"
-#include "core/render/worker_pool.h"
-#include "core/tuning/settle.h"
+#include "core/prepare/settle.h"
+#include "core/render/executor.h"
 
 // Interface of render backends. A backend renders tiles on threads of this process or elsewhere.
 namespace orrery {
@@ -19,25 +18,13 @@ struct RenderControl {
   std::stop_token stop = {};  // a stop request ends the render with Cancelled
   // Called after each tile, by several threads at once, with the number of finished tiles.
   std::function<void(int done, int total)> progress = {};
-  bool background = false;     // renders without this flag have priority
-  bool spread = false;         // for ProgressiveRender: any prefix of the tile order covers the whole image
-  SlotLease* lease = nullptr;  // see WorkerPool::for_each()
+  bool spread = false;  // for ProgressiveRender: any prefix of the tile order covers the whole image
   // Returns the seconds since the client's request began. Thread-safe. If empty, time limits count from the
   // start of the render.
   std::function<double()> used_s = {};
   // Further limits of a render with a budget: number of rays, and seconds. Other renders ignore them.
   double max_rays = std::numeric_limits<double>::infinity();
   double max_s = std::numeric_limits<double>::infinity();
-};
-
-// Cost of a render and error statistics of its film.
-struct RenderStats : FilmError {
-  TraceCounts counts;
-  const AcceleratorType* accelerator = nullptr;
-  AcceleratorFacts structure;  // acceleration structure that traced the rays
-  double build_ms = 0;         // wall-clock time to settle the plan and prepare the scene; 0 if cached
-  double trace_ms = 0;         // wall-clock time of tracing
-  double cpu_ms = 0;           // CPU time of tracing, summed over all threads
 };
 
 // Scene and settled plan, ready to render. Thread-safe if concurrent calls have different films and
@@ -48,14 +35,14 @@ class Prepared {
   // Adds the samples of each tile to the film, and their cost and error statistics to `stats`. A tile whose
   // first sample is not 0 continues from the sums in the film. The film depends only on scene and plan, not
   // on the backend, the threads, the order of tiles or the SIMD width. Throws Cancelled once control.stop is
-  // requested, std::bad_alloc, and the exceptions of SlotLease::renew() and control.progress. After an
+  // requested, std::bad_alloc, and the exceptions of the executor and of control.progress. After an
   // exception, the film is invalid. REQUIRES: the film stores sums, unless one call adds all samples of the
   // film.
   virtual void render(std::span<const TileView> tiles, Film& film, RenderStats& stats,
                       const RenderControl& control) = 0;
 };
 
-// Prepares scenes for rendering, e.g. on a thread pool. Thread-safe.
+// Prepares scenes for rendering, e.g. on threads of this process. Thread-safe.
 class Backend {
  public:
   virtual ~Backend() = default;
@@ -65,7 +52,7 @@ class Backend {
                                             RenderStats& stats, std::stop_token stop) = 0;
 };
 
-// Returns a backend on the threads of `pool`. The pool must outlive the backend and its Prepared objects.
-std::unique_ptr<Backend> threads_backend(WorkerPool& pool);
+// Returns a backend on the threads of `executor`, which must outlive the backend and its Prepared objects.
+std::unique_ptr<Backend> threads_backend(Executor& executor);
 
 }  // namespace orrery

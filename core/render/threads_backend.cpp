@@ -5,9 +5,9 @@
 #include "core/base/clock.h"
 #include "core/base/error.h"
 #include "core/prepare/geometry.h"
+#include "core/prepare/staged_world.h"
 #include "core/render/backend.h"
 #include "core/render/tile_renderer.h"
-#include "core/tuning/staged_world.h"
 
 namespace orrery {
 namespace {
@@ -15,32 +15,28 @@ namespace {
 template <class T>
 class OnThreads final : public Prepared {
  public:
-  OnThreads(World<T> world, SettledPlan plan, WorkerPool& pool)
-      : world_(std::move(world)), plan_(std::move(plan)), pool_(pool) {}
+  OnThreads(World<T> world, SettledPlan plan, Executor& executor)
+      : world_(std::move(world)), plan_(std::move(plan)), executor_(executor) {}
 
   void render(std::span<const TileView> tiles, Film& film, RenderStats& stats,
               const RenderControl& control) override {
-    std::vector<std::unique_ptr<TileRenderer<T>>> renderers(static_cast<std::size_t>(pool_.threads()));
+    std::vector<std::unique_ptr<TileRenderer<T>>> renderers(static_cast<std::size_t>(executor_.threads()));
     std::vector<double> cpu_ms(renderers.size());
     std::atomic<int> done = 0;
     const int total = static_cast<int>(tiles.size());
     const auto start = Clock::now();
-    pool_.for_each(
-        total, control.background,
-        [&](int step, int worker, TimeSlice& turn) {
-          if (control.stop.stop_requested()) return false;
-          const double cpu_before = thread_cpu_ms();
-          auto& renderer = renderers[static_cast<std::size_t>(worker)];
-          if (!renderer) renderer = std::make_unique<TileRenderer<T>>(world_, *plan_);
-          if (!renderer->render(tiles[static_cast<std::size_t>(step)], Checkpoint(control.stop, &turn), film))
-            return false;
-          cpu_ms[static_cast<std::size_t>(worker)] += thread_cpu_ms() - cpu_before;
-          ++done;
-          if (control.progress) control.progress(done, total);
-          return true;
-        },
-        control.lease);
-    if (done != total) throw Cancelled();
+    executor_.for_each(total, [&](int step, int worker) {
+      const TaskContext task = TaskScope::current();
+      const TaskScope scope({task.memory, &control.stop, task.time_slice});
+      checkpoint();
+      const double cpu_before = thread_cpu_ms();
+      auto& renderer = renderers[static_cast<std::size_t>(worker)];
+      if (!renderer) renderer = std::make_unique<TileRenderer<T>>(world_, *plan_);
+      renderer->render(tiles[static_cast<std::size_t>(step)], film);
+      cpu_ms[static_cast<std::size_t>(worker)] += thread_cpu_ms() - cpu_before;
+      ++done;
+      if (control.progress) control.progress(done, total);
+    });
     for (const auto& renderer : renderers)
       if (renderer) renderer->add_to(stats);
     stats.trace_ms += milliseconds_since(start);
@@ -50,12 +46,12 @@ class OnThreads final : public Prepared {
  private:
   const World<T> world_;
   const SettledPlan plan_;
-  WorkerPool& pool_;
+  Executor& executor_;
 };
 
 class ThreadsBackend final : public Backend {
  public:
-  explicit ThreadsBackend(WorkerPool& pool) : pool_(pool) {}
+  explicit ThreadsBackend(Executor& executor) : executor_(executor) {}
 
   std::unique_ptr<Prepared> prepare(const PreparedScene& scene, const SettledPlan& plan, RenderStats& stats,
                                     std::stop_token stop) override {
@@ -70,14 +66,16 @@ class ThreadsBackend final : public Backend {
     World<T> world = staged_world<T>(scene.parts(), plan, stats.build_ms, stop);
     stats.accelerator = plan->accelerator;
     stats.structure = facts_of(world);
-    return std::make_unique<OnThreads<T>>(std::move(world), plan, pool_);
+    return std::make_unique<OnThreads<T>>(std::move(world), plan, executor_);
   }
 
-  WorkerPool& pool_;
+  Executor& executor_;
 };
 
 }  // namespace
 
-std::unique_ptr<Backend> threads_backend(WorkerPool& pool) { return std::make_unique<ThreadsBackend>(pool); }
+std::unique_ptr<Backend> threads_backend(Executor& executor) {
+  return std::make_unique<ThreadsBackend>(executor);
+}
 
 }  // namespace orrery

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "core/base/task_scope.h"
 #include "core/cameras/shutter.h"
 #include "core/cameras/thin_lens.h"
 #include "core/render/color_scale.h"
@@ -64,12 +65,12 @@ TileRenderer<T>::TileRenderer(const World<T>& world, const Plan& plan)
 }
 
 template <class T>
-bool TileRenderer<T>::render(const TileView& tile, const Checkpoint& checkpoint, Film& film) {
+void TileRenderer<T>::render(const TileView& tile, Film& film) {
   omitted_.clear();
   begin_emission_rays(tile);
   if (places_samples_) find_streams(tile, SampleSet::pixel, pixel_streams_);
   if (plan_.samples == 1 && film.storage() != FilmStorage::sums && plan_.view == View::picture) {
-    if (!trace(tile, 0, checkpoint)) return false;
+    trace(tile, 0);
     put_single(tile, film);
   } else {
     sums_.samples = 0;
@@ -77,7 +78,8 @@ bool TileRenderer<T>::render(const TileView& tile, const Checkpoint& checkpoint,
     const int end = tile.first_sample + tile.samples;
     for (int sample = tile.first_sample; sample < end; ++sample) {
       if (2 * sample == end) first_half_ = sums_.radiance;
-      if (!checkpoint.may_continue() || !trace(tile, sample, checkpoint)) return false;
+      checkpoint();
+      trace(tile, sample);
       add_sample();
     }
     if (end % 2 == 0 && 2 * tile.first_sample <= end) add_error({tile, first_half_, sums_.radiance, end});
@@ -86,35 +88,32 @@ bool TileRenderer<T>::render(const TileView& tile, const Checkpoint& checkpoint,
   }
   stats_.omitted.add(ledger_of(tile, omitted_));
   if (plan_.clamp_indirect > 0) add_clamped(tile);
-  return true;
 }
 
 template <class T>
-bool TileRenderer<T>::trace(const TileView& tile, int sample, const Checkpoint& checkpoint) {
+void TileRenderer<T>::trace(const TileView& tile, int sample) {
   const bool is_first = sample == tile.first_sample;
   const std::uint64_t cut_before = stats_.counts.cut_rays;
-  if (!trace_part(tile, sample, PixelFilter::Part::positive, result_, checkpoint)) return false;
+  trace_part(tile, sample, PixelFilter::Part::positive, result_);
   if (negative_lobe_) {
-    if (!trace_part(tile, sample, PixelFilter::Part::negative, *negative_lobe_, checkpoint)) return false;
+    trace_part(tile, sample, PixelFilter::Part::negative, *negative_lobe_);
     subtract_negative_lobe();
   }
   if (plan_.clamp_indirect > 0) add_vector(is_first, result_.clamped, clamped_);
-  if (stats_.counts.cut_rays == cut_before) return true;
+  if (stats_.counts.cut_rays == cut_before) return;
   const bool first = omitted_.empty();
   omitted_.resize(3);
   add_vector(first, result_.omitted, omitted_);
-  return true;
 }
 
 template <class T>
-bool TileRenderer<T>::trace_part(const TileView& tile, int sample, PixelFilter::Part part,
-                                 TraceResult<T>& into, const Checkpoint& checkpoint) {
+void TileRenderer<T>::trace_part(const TileView& tile, int sample, PixelFilter::Part part,
+                                 TraceResult<T>& into) {
   const Draws draws(plan_.seed, tile, sample);
   if (places_samples_) place_samples(static_cast<std::uint32_t>(sample), pixel_streams_, part, samples_);
   send_rays(tile, samples_, draws, SampleSet::lens);
-  if (!tracer_->trace(rays_, draws, into, stats_.counts, checkpoint)) return false;
+  tracer_->trace(rays_, draws, into, stats_.counts);
   trace_emission_only(tile, sample, part, into);
-  return true;
 }
 
 template <class T>

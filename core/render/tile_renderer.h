@@ -3,10 +3,10 @@
 #include <memory>
 #include <optional>
 
+#include "core/accuracy/tile_halves.h"
 #include "core/cameras/pixel_filter.h"
 #include "core/model/technique.h"
 #include "core/render/backend.h"
-#include "core/render/tile_halves.h"
 
 namespace orrery {
 
@@ -17,19 +17,18 @@ class TileRenderer {
   // World and plan must outlive the renderer.
   TileRenderer(const World<T>& world, const Plan& plan);
 
-  // Adds the tile's samples to the film. Returns false if `checkpoint` stops the render. The tile in the film
-  // is then unchanged.
-  bool render(const TileView& tile, const Checkpoint& checkpoint, Film& film);
+  // Adds the tile's samples to the film. Calls checkpoint(). After an exception, the tile in the film is
+  // unchanged, and the renderer must not be used again.
+  void render(const TileView& tile, Film& film);
 
   // Adds the statistics of all rendered tiles to `stats`.
   void add_to(RenderStats& stats) const;
 
  private:
-  // Traces one sample of every pixel. Returns false if `checkpoint` stops the render.
-  bool trace(const TileView& tile, int sample, const Checkpoint& checkpoint);
+  // Traces one sample of every pixel.
+  void trace(const TileView& tile, int sample);
   // Traces one sample of every pixel for the positive or the negative part of the pixel filter.
-  bool trace_part(const TileView& tile, int sample, PixelFilter::Part part, TraceResult<T>& into,
-                  const Checkpoint& checkpoint);
+  void trace_part(const TileView& tile, int sample, PixelFilter::Part part, TraceResult<T>& into);
   // Subtracts the result for the negative part of the filter from the result for the positive part.
   void subtract_negative_lobe();
   // Generates camera rays through the samples. Lens positions and times are drawn from `set`.

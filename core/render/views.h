@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "core/image/files.h"
+#include "core/image/encode/files.h"
 #include "core/model/film.h"
 #include "core/model/plan.h"
 #include "core/plan/request.h"
@@ -23,7 +23,7 @@ void choose_space(RenderRequest& request, FileFormat format);
 
 // Encodes the film. PNG and JPEG contain its radiance as sRGB. EXR contains radiance as R, G and B, and each
 // channel as a layer of the same name ("normal.X"), all as 32-bit floats. Equal films give equal bytes.
-// Thread-safe. PNG and EXR encoding throw Cancelled, see interruption_point(). Also throws std::bad_alloc,
+// Thread-safe. PNG and EXR encoding throw Cancelled, see checkpoint(). Also throws std::bad_alloc,
 // and a std::exception that is not an Error if the codec fails. REQUIRES: all tiles of the film were stored,
 // and its storage is at least storage_for().
 std::string encode_film(const Film& film, FileFormat format, const PngOptions& png = {});

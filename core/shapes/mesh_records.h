@@ -96,7 +96,7 @@ class MeshRecords {
                               part.mapped, static_cast<T>(part.magnitude)});
     flat_.reserve(table.triangles.size());
     for (std::size_t i = 0; i < table.triangles.size(); ++i) {
-      interruption_point(i);
+      checkpoint(i);
       const Corners<double> at = table.corners(i);
       flat_.push_back(Vec3<T>(face_normal(at.a, at.b, at.c)));
     }

@@ -34,7 +34,7 @@ class PackedRecords final : public PackedPrimitives<T> {
   PackedRecords(const Records& records, int first, std::span<const int> indices) : first_(first) {
     blocks_.reserve(indices.size() / kB);
     for (; indices.size() >= kB; indices = indices.subspan(kB)) {
-      interruption_point(blocks_.size());
+      checkpoint(blocks_.size());
       fill(blocks_.emplace_back(), records, first, indices.first(kB));
     }
   }

@@ -6,8 +6,9 @@ namespace orrery {
 
 RenderResult rendered(const std::shared_ptr<const Scene>& scene, const RenderRequest& request) {
   const PreparedScene prepared(scene);
-  WorkerPool pool(1);
-  return render_frame(prepared, settle(prepared, make_plan(*scene, request)), FilmStorage::linear32, pool);
+  ThreadExecutor executor(1);
+  return render_frame(prepared, settle(prepared, make_plan(*scene, request)), FilmStorage::linear32,
+                      executor);
 }
 
 std::vector<float> values_of(const Film& film) {
@@ -18,8 +19,8 @@ std::vector<float> values_of(const Film& film) {
 SampledTile::SampledTile(const std::shared_ptr<const Scene>& scene, const RenderRequest& request)
     : prepared_(scene),
       plan_(settle(prepared_, make_plan(*scene, request))),
-      pool_(1),
-      ready_(threads_backend(pool_)->prepare(prepared_, plan_, stats_, {})),
+      executor_(1),
+      ready_(threads_backend(executor_)->prepare(prepared_, plan_, stats_, {})),
       film_(plan_->width, plan_->height, FilmStorage::sums) {
   sums_.samples = 0;
 }

@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
+#include "core/budget/renderer.h"
 #include "core/plan/request.h"
-#include "core/render/renderer.h"
 
 namespace orrery {
 
@@ -28,7 +28,7 @@ class SampledTile {
  private:
   PreparedScene prepared_;
   SettledPlan plan_;
-  WorkerPool pool_;
+  ThreadExecutor executor_;
   RenderStats stats_;
   std::unique_ptr<Prepared> ready_;
   Film film_;

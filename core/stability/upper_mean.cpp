@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "core/render/unit_histogram.h"
+#include "core/accuracy/unit_histogram.h"
 #include "core/stability/row.h"
 #include "core/stability/split_mix.h"
 

@@ -5,12 +5,12 @@
 #include <random>
 #include <vector>
 
+#include "core/accuracy/unit_histogram.h"
 #include "core/image/srgb.h"
 #include "core/model/technique.h"
 #include "core/plan/limits.h"
 #include "core/plan/options.h"
 #include "core/plan/plan.h"
-#include "core/render/unit_histogram.h"
 
 namespace orrery {
 namespace {
@@ -58,9 +58,9 @@ RenderRequest without_cuts(const Plan& plan) {
 
 // Renders `pixels` and adds the cost to `stats`. Returns a film whose other pixels are not set.
 Film render_pixels(const PreparedScene& scene, const Plan& plan, const std::vector<std::int64_t>& pixels,
-                   RenderStats& stats, WorkerPool& pool, const RenderControl& control) {
+                   RenderStats& stats, Executor& executor, const RenderControl& control) {
   const SettledPlan settled = settle(scene, plan, control.stop);
-  const auto prepared = threads_backend(pool)->prepare(scene, settled, stats, control.stop);
+  const auto prepared = threads_backend(executor)->prepare(scene, settled, stats, control.stop);
   Film film(plan.width, plan.height, FilmStorage::linear32);
   prepared->render(tiles_of(pixels, plan.width, plan.samples), film, stats, control);
   return film;
@@ -73,7 +73,7 @@ double in_space(double linear, Space space) {
 }  // namespace
 
 Audit audit(const PreparedScene& scene, const RenderRequest& asked, int pixels, std::uint64_t seed,
-            WorkerPool& pool, const RenderControl& control) {
+            Executor& executor, const RenderControl& control) {
   require_no_budget(asked, "an audit");
   require_picture(asked, "an audit");
   if (asked.layers && !asked.layers->empty())
@@ -84,8 +84,8 @@ Audit audit(const PreparedScene& scene, const RenderRequest& asked, int pixels, 
   const Plan whole = make_plan(scene.scene(), without_cuts(plan));
   const std::vector<std::int64_t> drawn = draw_pixels(plan, pixels, seed);
   RenderStats cut_stats, whole_stats;
-  const Film cut = render_pixels(scene, plan, drawn, cut_stats, pool, control);
-  const Film full = render_pixels(scene, whole, drawn, whole_stats, pool, control);
+  const Film cut = render_pixels(scene, plan, drawn, cut_stats, executor, control);
+  const Film full = render_pixels(scene, whole, drawn, whole_stats, executor, control);
 
   Audit found{.pixels = pixels, .left_out = whole_stats.omitted.max()};
   const double range = plan.halves_range(), left_out = in_space(found.left_out, plan.space);

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "core/budget/renderer.h"
 #include "core/plan/request.h"
-#include "core/render/renderer.h"
 
 namespace orrery {
 
@@ -28,6 +28,6 @@ inline constexpr double kEqualPixels = 1e-5;  // largest channel difference that
 // Thread-safe. Throws InputError for budgets, layers and views other than `picture`, and the errors of
 // Backend::prepare() and Prepared::render(). REQUIRES: pixels in [1, kMaxAuditPixels].
 Audit audit(const PreparedScene& scene, const RenderRequest& asked, int pixels, std::uint64_t seed,
-            WorkerPool& pool, const RenderControl& control = {});
+            Executor& executor, const RenderControl& control = {});
 
 }  // namespace orrery

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/render/certificate.h"
+#include "core/accuracy/certificate.h"
 #include "core/study/difference.h"
 #include "core/study/interval.h"
 

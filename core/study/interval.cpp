@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/render/halves.h"
+#include "core/accuracy/halves.h"
 
 namespace orrery {
 

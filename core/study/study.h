@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/budget/renderer.h"
 #include "core/plan/request.h"
-#include "core/render/renderer.h"
 #include "core/study/chart.h"
 
 namespace orrery {

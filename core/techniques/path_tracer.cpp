@@ -1,10 +1,10 @@
 #include "core/techniques/path_tracer.h"
 
-#include "core/stages/emission.h"
-#include "core/stages/lane_masks.h"
-#include "core/stages/shadowed_light.h"
-#include "core/stages/specular.h"
-#include "core/stages/surfaces.h"
+#include "core/lighting/emission.h"
+#include "core/lighting/lane_masks.h"
+#include "core/lighting/shadowed_light.h"
+#include "core/lighting/specular.h"
+#include "core/lighting/surfaces.h"
 
 namespace orrery {
 
@@ -90,12 +90,9 @@ void PathTracer<T>::begin() {
 }
 
 template <class T>
-bool PathTracer<T>::finish() {
-  if (reuse_ &&
-      !reuse_->finish(indirect_ ? *indirect_ : Wavefront<T>::sums(0), this->counts(), this->checkpoint()))
-    return false;
+void PathTracer<T>::finish() {
+  if (reuse_) reuse_->finish(indirect_ ? *indirect_ : Wavefront<T>::sums(0), this->counts());
   if (indirect_) add_clamped();
-  return true;
 }
 
 template <class T>

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "core/lighting/diffuse_rays.h"
+#include "core/lighting/sampled_light.h"
 #include "core/model/material.h"
-#include "core/stages/diffuse_rays.h"
-#include "core/stages/path_reuse.h"
-#include "core/stages/sampled_light.h"
+#include "core/reuse/path_reuse.h"
 #include "core/techniques/wavefront.h"
 
 namespace orrery {
@@ -28,7 +28,7 @@ class PathTracer : public Wavefront<T> {
   using N = Lanes<T>;
 
   void begin() final;
-  bool finish() final;
+  void finish() final;
   Vec3Array<T>& sums(int depth) final {
     if (depth > 0 && reuse_) return reuse_->suffixes();
     return depth > 0 && indirect_ ? *indirect_ : Wavefront<T>::sums(depth);

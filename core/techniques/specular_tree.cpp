@@ -1,7 +1,7 @@
 #include "core/techniques/specular_tree.h"
 
-#include "core/stages/emission.h"
-#include "core/stages/specular.h"
+#include "core/lighting/emission.h"
+#include "core/lighting/specular.h"
 
 namespace orrery {
 
@@ -17,7 +17,7 @@ void SpecularTree<T>::shade(const LaneGroups& groups, const LaneGroups& met) {
   const Geometry<T>& geometry = this->geometry_;
   environment_lighting_.add(paths->rays, hits, groups, nullptr, radiance);
   direct_light_.add(*paths, this->draws(), surface, groups_with(geometry, surface, met, &MaterialTraits::lit),
-                    radiance, this->counts(), this->checkpoint());
+                    radiance, this->counts());
   add_emission(geometry, surface, met, radiance);
   if (!this->plan_.specular) return;
   const LaneGroups specular = groups_with(geometry, surface, met, &MaterialTraits::mirrors);

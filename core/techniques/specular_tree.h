@@ -1,8 +1,8 @@
 #pragma once
 
-#include "core/stages/direct_light.h"
-#include "core/stages/environment_lighting.h"
-#include "core/stages/lane_masks.h"
+#include "core/lighting/direct_light.h"
+#include "core/lighting/environment_lighting.h"
+#include "core/lighting/lane_masks.h"
 #include "core/techniques/wavefront.h"
 
 namespace orrery {

@@ -1,7 +1,8 @@
 #include "core/techniques/wavefront.h"
 
-#include "core/stages/deposit.h"
-#include "core/stages/surfaces.h"
+#include "core/base/task_scope.h"
+#include "core/lighting/deposit.h"
+#include "core/lighting/surfaces.h"
 
 namespace orrery {
 
@@ -13,26 +14,22 @@ Wavefront<T>::Wavefront(const World<T>& world, const Plan& plan)
       vertices_(std::make_unique<Vertices>()) {}
 
 template <class T>
-bool Wavefront<T>::trace(const RayBatch<T>& camera_rays, const Draws& draws, TraceResult<T>& out,
-                         TraceCounts& counts, const Checkpoint& checkpoint) {
+void Wavefront<T>::trace(const RayBatch<T>& camera_rays, const Draws& draws, TraceResult<T>& out,
+                         TraceCounts& counts) {
   draws_ = &draws;
   out_ = &out;
   counts_ = &counts;
-  checkpoint_ = &checkpoint;
+  waiting_.clear();  // not empty after an exception
   start(camera_rays);
   begin();
-  // Polls the checkpoint after each batch, because nested glass can spawn a tree of billions of rays.
   while (!waiting_.empty()) {
     auto batch = std::move(waiting_.back());
     waiting_.pop_back();
     run(*batch);
     spare_.push_back(std::move(batch));
-    if (!checkpoint.may_continue()) {
-      waiting_.clear();
-      return false;
-    }
+    checkpoint();  // after each batch, because nested glass can spawn a tree of billions of rays
   }
-  return finish();
+  finish();
 }
 
 template <class T>

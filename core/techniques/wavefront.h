@@ -18,8 +18,8 @@ class Wavefront : public Tracer<T> {
   using N = Lanes<T>;
 
   Wavefront(const World<T>& world, const Plan& plan);
-  bool trace(const RayBatch<T>& camera_rays, const Draws& draws, TraceResult<T>& out, TraceCounts& counts,
-             const Checkpoint& checkpoint) final;
+  void trace(const RayBatch<T>& camera_rays, const Draws& draws, TraceResult<T>& out,
+             TraceCounts& counts) final;
 
  protected:
   // Rays of the current batch and their hits.
@@ -35,10 +35,9 @@ class Wavefront : public Tracer<T> {
   // spawn(). `met` are the registers of `groups` with a surface.
   virtual void shade(const LaneGroups& groups, const LaneGroups& met) = 0;
 
-  // Called before a batch of camera rays, and after all rays spawned from it. finish() returns false if the
-  // work is cancelled.
+  // Called before a batch of camera rays, and after all rays spawned from it.
   virtual void begin() {}
-  virtual bool finish() { return true; }
+  virtual void finish() {}
   // Returns the sums, by camera ray, to which the light of rays of this depth is added.
   virtual Vec3Array<T>& sums(int /*depth*/) { return out_->radiance; }
 
@@ -60,7 +59,6 @@ class Wavefront : public Tracer<T> {
   const Draws& batch_draws() const { return *draws_; }
   PathDraws<T> draws() const { return {*draws_, vertices_->paths->slot, vertices_->paths->depth}; }
   TraceCounts& counts() { return *counts_; }
-  const Checkpoint& checkpoint() const { return *checkpoint_; }
 
   const Geometry<T>& geometry_;
   const Accelerator<T>& accelerator_;
@@ -83,7 +81,6 @@ class Wavefront : public Tracer<T> {
   const Draws* draws_ = nullptr;
   TraceResult<T>* out_ = nullptr;
   TraceCounts* counts_ = nullptr;
-  const Checkpoint* checkpoint_ = nullptr;
 };
 
 extern template class Wavefront<float>;

@@ -3,7 +3,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "core/render/renderer.h"
+#include "core/budget/renderer.h"
 
 // Error reports of an image, as JSON and as values of response headers.
 namespace orrery {

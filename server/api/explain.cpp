@@ -4,13 +4,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/accuracy/certificate.h"
 #include "core/base/number.h"
 #include "core/model/accelerator.h"
 #include "core/model/technique.h"
 #include "core/plan/options.h"
 #include "core/plan/plan.h"
 #include "core/plan/warnings.h"
-#include "core/render/certificate.h"
 #include "server/api/error_report.h"
 #include "server/api/option_json.h"
 

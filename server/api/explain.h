@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
+#include "core/budget/budget.h"
 #include "core/model/plan.h"
 #include "core/model/scene.h"
-#include "core/render/budget.h"
 
 namespace orrery {
 

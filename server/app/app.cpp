@@ -71,7 +71,7 @@ std::unique_ptr<Refinement> App::refine(RefinementSpec spec) {
   return refinement;
 }
 
-SettledPlan App::settle(const PreparedScene& scene, const Plan& plan, const Caller& caller) {
+SettledPlan App::settle(const StoredScene& scene, const Plan& plan, const Caller& caller) {
   if (!plan.try_accelerators) return orrery::settle(scene, plan);
   std::optional<SettledPlan> settled;
   run_watched(services_, caller, timer_.now(), {.stage = Stage::settle}, [&](const std::stop_token& stop) {
@@ -82,7 +82,7 @@ SettledPlan App::settle(const PreparedScene& scene, const Plan& plan, const Call
   return *settled;
 }
 
-Forecast App::forecast(const PreparedScene& scene, const SettledPlan& plan, const Caller& caller) {
+Forecast App::forecast(const StoredScene& scene, const SettledPlan& plan, const Caller& caller) {
   renders_.require_request_rays(scene.scene(), *plan);
   Plan pilots = *plan;  // cost of the pilots: about 1 sample per pixel, more for small images
   pilots.samples = 1;
@@ -93,8 +93,8 @@ Forecast App::forecast(const PreparedScene& scene, const SettledPlan& plan, cons
     const SceneStore::SizeGuard measured(scenes_, scene);
     RenderControl control = renders_.limits_of(scene.scene(), *plan);
     control.stop = stop;
-    control.lease = &ticket;
-    found = orrery::forecast(scene, plan, pool_, control);
+    PoolExecutor executor(pool_, false, &ticket);
+    found = orrery::forecast(scene, plan, executor, control);
   });
   return *found;
 }

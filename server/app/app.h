@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "core/budget/budget.h"
 #include "core/params/document.h"
-#include "core/render/budget.h"
 #include "server/app/streams.h"
 #include "server/cache/asset_store.h"
 #include "server/cache/pictures.h"
@@ -21,6 +21,7 @@
 #include "server/rendering/render_service.h"
 #include "server/scheduler/admission.h"
 #include "server/scheduler/work_memory.h"
+#include "server/scheduler/worker_pool.h"
 #include "server/security/access.h"
 #include "server/telemetry/service_counters.h"
 
@@ -63,11 +64,11 @@ class App {
 
   // Settles the plan as RenderService::render() would. Waits for a slot if accelerators must be tried. Throws
   // the errors of render().
-  SettledPlan settle(const PreparedScene& scene, const Plan& plan, const Caller& caller);
+  SettledPlan settle(const StoredScene& scene, const Plan& plan, const Caller& caller);
 
   // Predicts the cost and the error of render() from pilots, which wait for a slot. Throws the errors of
   // render().
-  Forecast forecast(const PreparedScene& scene, const SettledPlan& plan, const Caller& caller);
+  Forecast forecast(const StoredScene& scene, const SettledPlan& plan, const Caller& caller);
 
   // Returns whether the service is draining: it completes running work and rejects new work.
   bool draining() const { return drains_.stop_requested(); }

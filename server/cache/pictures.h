@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/render/renderer.h"
+#include "core/budget/renderer.h"
 #include "core/render/views.h"
 #include "server/cache/single_flight.h"
 

@@ -72,7 +72,7 @@ SceneStore::Prepared SceneStore::load(const Document& document, const AssetSourc
                                       const std::string& client) const {
   const std::stop_token* const stop = TaskScope::current().stop;
   return work_.open(client)->run(stop ? *stop : std::stop_token(), [&] {
-    return std::make_shared<const PreparedScene>(load_scene(document, assets));
+    return std::make_shared<const StoredScene>(load_scene(document, assets));
   });
 }
 
@@ -93,7 +93,7 @@ void SceneStore::remove(const std::string& id, const std::string& client, bool o
   weigh(id);
 }
 
-void SceneStore::measure(const PreparedScene& scene) {
+void SceneStore::measure(const StoredScene& scene) {
   const std::lock_guard lock(mutex_);
   const auto known = scenes_.find(scene.scene().id);
   const bool here = known != scenes_.end();

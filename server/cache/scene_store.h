@@ -10,8 +10,8 @@
 
 #include "core/model/asset_source.h"
 #include "core/params/document.h"
-#include "core/prepare/prepared_scene.h"
 #include "server/base/fair_shares.h"
+#include "server/cache/stored_scene.h"
 #include "server/scheduler/work_memory.h"
 
 namespace orrery {
@@ -24,7 +24,7 @@ namespace orrery {
 // removed, its memory is charged to the work that uses it. Thread-safe.
 class SceneStore {
  public:
-  using Prepared = std::shared_ptr<const PreparedScene>;
+  using Prepared = std::shared_ptr<const StoredScene>;
 
   SceneStore(std::size_t max_bytes, WorkMemory& work) : max_(max_bytes), work_(work) {}
   ~SceneStore();
@@ -52,13 +52,13 @@ class SceneStore {
   // scene.
   class SizeGuard {
    public:
-    SizeGuard(SceneStore& store, const PreparedScene& scene) : store_(store), scene_(scene) {}
+    SizeGuard(SceneStore& store, const StoredScene& scene) : store_(store), scene_(scene) {}
     ~SizeGuard() { store_.measure(scene_); }
     SizeGuard(const SizeGuard&) = delete;
 
    private:
     SceneStore& store_;
-    const PreparedScene& scene_;
+    const StoredScene& scene_;
   };
 
   std::size_t bytes() const;
@@ -77,7 +77,7 @@ class SceneStore {
   Prepared find_or_load(const std::string& id, const Document& document, const AssetSource& assets,
                         const std::string& client);
   Prepared load(const Document& document, const AssetSource& assets, const std::string& client) const;
-  void measure(const PreparedScene& scene);
+  void measure(const StoredScene& scene);
   // REQUIRES for the functions below: mutex_ is held.
   Prepared find_locked(const std::string& id);  // counts as a use; null if not stored
   bool is_kept(const std::string& id) const;

@@ -3,6 +3,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "core/load/scene_file.h"
 #include "core/plan/limits.h"
 #include "core/plan/plan.h"
 #include "core/study/audit.h"
@@ -12,7 +13,6 @@
 #include "server/commands/help_layout.h"
 #include "server/commands/progress.h"
 #include "server/commands/render_flags.h"
-#include "server/commands/scene_file.h"
 #include "server/commands/signals.h"
 
 namespace orrery {
@@ -63,9 +63,9 @@ std::string audit_text(const Audit& found, const Plan& plan) {
 }
 
 Audit audit_of(const PreparedScene& scene, const AuditOptions& options, const RenderRequest& request,
-               WorkerPool& pool, const RenderControl& control) {
+               Executor& executor, const RenderControl& control) {
   try {
-    return audit(scene, request, options.pixels, options.draw, pool, control);
+    return audit(scene, request, options.pixels, options.draw, executor, control);
   } catch (const InputError& error) {
     throw with_flag_names(error);
   }
@@ -75,10 +75,10 @@ int run_audit(const AuditOptions& options) {
   const RenderRequest request = read_render_flags(options.render);
   const PreparedScene scene(load_scene_file(options.render.scene));
   const SignalWatch signals;
-  WorkerPool pool(options.threads);
+  ThreadExecutor executor(options.threads);
   std::optional<ProgressBar> bar(std::in_place, "pixels");
   const Audit found = audit_of(
-      scene, options, request, pool,
+      scene, options, request, executor,
       {.stop = signals.interrupted(), .progress = [&](int done, int total) { bar->update(done, total); }});
   bar.reset();
   const Plan plan = make_plan(scene.scene(), request);

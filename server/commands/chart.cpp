@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
+#include "core/load/scene_file.h"
 #include "core/plan/limits.h"
 #include "core/plan/plan.h"
 #include "core/study/study.h"
@@ -11,7 +12,6 @@
 #include "server/commands/output_file.h"
 #include "server/commands/progress.h"
 #include "server/commands/render_flags.h"
-#include "server/commands/scene_file.h"
 #include "server/commands/signals.h"
 #include "server/rendering/frame.h"
 
@@ -47,9 +47,9 @@ Study study_of(const Scene& scene, const RenderRequest& view, const Study::Exten
 }
 
 RenderResult render_picture(const PreparedScene& scene, const RenderRequest& request, FilmStorage storage,
-                            WorkerPool& pool, const SignalWatch& signals) {
+                            Executor& executor, const SignalWatch& signals) {
   const SettledPlan plan = settle(scene, make_plan(scene.scene(), request), signals.interrupted());
-  return render_frame(scene, plan, storage, pool, {.stop = signals.interrupted()});
+  return render_frame(scene, plan, storage, executor, {.stop = signals.interrupted()});
 }
 
 // Returns a name such as "2-whitted-5-float-16.png". `place`: rank by cost, from 0.
@@ -60,12 +60,12 @@ std::string picture_name(std::size_t place, const Configuration& c) {
 
 // Renders the Pareto front again with the seeds of the first round, and writes the images.
 void write_pictures(const std::string& folder, const Study& study, const PreparedScene& scene,
-                    WorkerPool& pool, const SignalWatch& signals) {
+                    Executor& executor, const SignalWatch& signals) {
   const std::vector<std::size_t> front = study.chart().front();
   for (std::size_t place = 0; place < front.size(); ++place) {
     const Point& point = study.chart().points[front[place]];
     const RenderResult made =
-        render_picture(scene, study.request_of(point), FilmStorage::srgb8, pool, signals);
+        render_picture(scene, study.request_of(point), FilmStorage::srgb8, executor, signals);
     write_file((std::filesystem::path(folder) / picture_name(place, point.configuration)).string(),
                encode_film(made.film, FileFormat::png));
   }
@@ -105,16 +105,16 @@ int chart(ChartOptions options) {
   bar->say("reading " + options.render.scene);
   const PreparedScene scene(load_scene_file(options.render.scene));
   const SignalWatch signals;
-  WorkerPool pool(options.threads);
-  options.extent.threads = pool.threads();
+  ThreadExecutor executor(options.threads);
+  options.extent.threads = executor.threads();
   Study study = study_of(scene.scene(), request, options.extent);
   for (int number = 0; number < study.pictures(); ++number) {
-    study.add(render_picture(scene, study.request(number), FilmStorage::linear32, pool, signals));
+    study.add(render_picture(scene, study.request(number), FilmStorage::linear32, executor, signals));
     bar->update(number + 1, study.pictures());
   }
   bar.reset();
   write_file(options.output, form->write(study.chart(), ""));
-  if (!options.pictures.empty()) write_pictures(options.pictures, study, scene, pool, signals);
+  if (!options.pictures.empty()) write_pictures(options.pictures, study, scene, executor, signals);
   print_recommendations(study.chart());
   return kDone;
 }

@@ -1,10 +1,10 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "core/load/scene_file.h"
 #include "core/plan/plan.h"
 #include "core/plan/warnings.h"
 #include "server/commands/commands.h"
-#include "server/commands/scene_file.h"
 
 namespace orrery {
 namespace {

@@ -9,10 +9,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/shorten.h"
+#include "core/load/scene_file.h"
 #include "core/params/json.h"
 #include "core/params/suggest.h"
 #include "server/commands/help_layout.h"
-#include "server/commands/scene_file.h"
 #include "server/config/flag_name.h"
 
 namespace orrery {

@@ -1,12 +1,12 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "core/budget/budget.h"
+#include "core/load/scene_file.h"
 #include "core/plan/plan.h"
-#include "core/render/budget.h"
 #include "server/api/explain.h"
 #include "server/commands/commands.h"
 #include "server/commands/render_flags.h"
-#include "server/commands/scene_file.h"
 
 namespace orrery {
 namespace {
@@ -35,8 +35,8 @@ int explain(const ExplainOptions& options) {
   const SettledPlan plan = settle(prepared, make_plan(scene, request));
   std::optional<Forecast> foretold;
   if (options.measure) {
-    WorkerPool pool(options.threads);
-    foretold = forecast(prepared, plan, pool);
+    ThreadExecutor executor(options.threads);
+    foretold = forecast(prepared, plan, executor);
   }
   std::cout << (options.json ? explain_json(scene, *plan, foretold).dump(2) + "\n"
                              : explain_text(scene, *plan, foretold));

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/number.h"
+#include "core/load/scene_file.h"
 #include "core/plan/plan.h"
 #include "server/commands/checks.h"
 #include "server/commands/commands.h"
@@ -10,11 +11,11 @@
 #include "server/commands/output_file.h"
 #include "server/commands/progress.h"
 #include "server/commands/render_flags.h"
-#include "server/commands/scene_file.h"
 #include "server/commands/signals.h"
 #include "server/commands/stats.h"
 #include "server/rendering/orbit_budget.h"
 #include "server/rendering/pipeline.h"
+#include "server/scheduler/worker_pool.h"
 
 namespace orrery {
 namespace {
@@ -142,8 +143,8 @@ class OrbitRun {
   RenderResult render(std::int64_t frame) {
     const std::stop_token stop = signals_.interrupted();
     const Plan plan = make_plan(scene_.scene(), path_.at(frame));
-    RenderResult rendered =
-        render_frame(scene_, settle(scene_, plan, stop), storage_for(format_, plan), pool_, {.stop = stop});
+    RenderResult rendered = render_frame(scene_, settle(scene_, plan, stop), storage_for(format_, plan),
+                                         executor_, {.stop = stop});
     budget_.add(scene_.scene(), rendered, path_);
     return rendered;
   }
@@ -157,6 +158,7 @@ class OrbitRun {
   OrbitBudget budget_;
   SignalWatch signals_;  // created after the scene is read and before the pool starts its threads
   WorkerPool pool_;
+  PoolExecutor executor_{pool_};
 };
 
 std::string budget_line(const nlohmann::ordered_json& budget, int frames) {

@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "core/base/error.h"
-#include "server/commands/scene_file.h"
+#include "core/load/scene_file.h"
 
 namespace orrery {
 

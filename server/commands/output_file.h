@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/image/files.h"
+#include "core/image/encode/files.h"
 
 namespace orrery {
 

@@ -1,13 +1,13 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "core/load/scene_file.h"
 #include "core/plan/plan.h"
 #include "core/plan/warnings.h"
 #include "server/commands/commands.h"
 #include "server/commands/output_file.h"
 #include "server/commands/progress.h"
 #include "server/commands/render_flags.h"
-#include "server/commands/scene_file.h"
 #include "server/commands/signals.h"
 #include "server/commands/stats.h"
 #include "server/rendering/frame.h"
@@ -42,10 +42,10 @@ Plan made_plan(Plan plan, const std::optional<BudgetOutcome>& budget) {
 }
 
 RenderResult render_with_progress(const PreparedScene& scene, const Plan& plan, FileFormat format,
-                                  WorkerPool& pool, const SignalWatch& signals, Clock::time_point begin,
+                                  Executor& executor, const SignalWatch& signals, Clock::time_point begin,
                                   ProgressBar& bar) {
   bar.say("preparing " + std::to_string(scene.scene().primitive_count()) + " primitives");
-  return render_frame(scene, settle(scene, plan, signals.interrupted()), storage_for(format, plan), pool,
+  return render_frame(scene, settle(scene, plan, signals.interrupted()), storage_for(format, plan), executor,
                       {.stop = signals.interrupted(),
                        .progress = [&](int done, int total) { bar.update(done, total); },
                        .used_s = [begin] { return milliseconds_since(begin) / 1000; }});
@@ -71,11 +71,11 @@ int render(const RenderOptions& options) {
   stats.load_ms = milliseconds_since(start);
   const SignalWatch signals;  // until here, signals end the process
   Plan plan = make_plan(scene.scene(), request);
-  WorkerPool pool(options.threads);
-  stats.threads = pool.threads();
+  ThreadExecutor executor(options.threads);
+  stats.threads = executor.threads();
 
   const double cpu_before = process_cpu_ms();
-  const RenderResult result = render_with_progress(scene, plan, format, pool, signals, begin, *bar);
+  const RenderResult result = render_with_progress(scene, plan, format, executor, signals, begin, *bar);
   bar.reset();
   stats.render_cpu_s = (process_cpu_ms() - cpu_before) / 1000;
   stats.render = result.stats;

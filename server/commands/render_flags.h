@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/image/files.h"
+#include "core/image/encode/files.h"
 #include "core/plan/request.h"
 
 namespace CLI {

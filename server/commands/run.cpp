@@ -6,12 +6,12 @@
 #include <optional>
 
 #include "core/base/version.h"
+#include "core/budget/renderer.h"
+#include "core/load/scene_file.h"
 #include "core/math/instruction_level.h"
 #include "core/params/suggest.h"
-#include "core/render/renderer.h"
 #include "server/commands/commands.h"
 #include "server/commands/help_layout.h"
-#include "server/commands/scene_file.h"
 
 namespace orrery {
 namespace {

@@ -3,8 +3,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "core/budget/renderer.h"
 #include "core/model/plan.h"
-#include "core/render/renderer.h"
 
 namespace orrery {
 

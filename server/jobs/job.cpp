@@ -110,15 +110,15 @@ RenderResult Job::try_render(int step, const WorkCancellation& watch) {
   }
   // Assumes that all steps take as long as the step with the budget.
   RenderControl control{.stop = watch.stop(),
-                        .background = true,
                         .max_s = kShareOfBudgets * static_cast<double>(limit_.count()) / work().steps()};
   const bool has_passes = has_budget(asked.asked);  // their number is not known in advance
   if (!has_passes)
     control.progress = [this, step, rays = expected_rays(scene, asked)](int done, int) {
       count(step, done, rays);
     };
-  RenderResult rendered = memory_->run(
-      watch.stop(), [&] { return services_.render(ticket, *spec_.scene, asked, work().storage(), control); });
+  RenderResult rendered = memory_->run(watch.stop(), [&] {
+    return services_.render(ticket, Priority::batch, *spec_.scene, asked, work().storage(), control);
+  });
   if (has_passes) {  // counts the rays of the chosen settings, not of the search
     RenderRequest made;
     static_cast<RenderSettings&>(made) = rendered.budget->settings;

@@ -20,7 +20,7 @@ namespace orrery {
 
 // Work of a job and its client.
 struct JobSpec {
-  std::shared_ptr<const PreparedScene> scene;
+  std::shared_ptr<const StoredScene> scene;
   std::unique_ptr<JobWork> work;
   std::string client;
 };
@@ -88,7 +88,7 @@ class Job {
   const RenderServices services_;
   const std::chrono::seconds limit_;
   const Room room_;
-  std::shared_ptr<MemoryAccount> memory_;  // account of the films; reset at the end
+  std::shared_ptr<WorkAccount> memory_;  // account of the films; reset at the end
   std::stop_source cancelled_;
   mutable std::mutex mutex_;  // guards the members below
   mutable std::condition_variable_any changed_;

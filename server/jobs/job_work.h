@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "core/budget/renderer.h"
 #include "core/plan/request.h"
-#include "core/render/renderer.h"
 #include "server/base/shared_bytes.h"
 
 namespace orrery {

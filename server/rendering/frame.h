@@ -5,7 +5,7 @@
 
 #include "core/base/clock.h"
 #include "core/base/task_scope.h"
-#include "core/render/renderer.h"
+#include "core/budget/renderer.h"
 #include "core/render/views.h"
 
 namespace orrery {

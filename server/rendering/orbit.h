@@ -11,6 +11,7 @@
 #include "core/plan/limits.h"
 #include "core/plan/options.h"
 #include "core/plan/request.h"
+#include "server/cache/stored_scene.h"
 #include "server/rendering/frame.h"
 
 namespace orrery {
@@ -64,7 +65,7 @@ inline void require_range(const OrbitPath& path, int frames, std::string_view st
 
 // Parameters of an orbit stream.
 struct OrbitSpec {
-  std::shared_ptr<const PreparedScene> scene;
+  std::shared_ptr<const StoredScene> scene;
   OrbitPath path;
   int frames = 120;
   double fps = 30;     // maximum frames per second; 0: as fast as the fastest viewer reads

@@ -134,8 +134,10 @@ RenderResult OrbitBroadcast::try_render(const Plan& plan, const std::stop_token&
   demand.subscribers = subscribers_;
   auto ticket = services_.admission.enter_again(demand, stop);
   memory_->settle(0);  // returns the memory granted to earlier frames
-  return memory_->run(
-      stop, [&] { return services_.render(ticket, *spec_.scene, plan, FilmStorage::srgb8, {.stop = stop}); });
+  return memory_->run(stop, [&] {
+    return services_.render(ticket, Priority::interactive, *spec_.scene, plan, FilmStorage::srgb8,
+                            {.stop = stop});
+  });
 }
 
 void OrbitBroadcast::deliver(std::int64_t number, Frame&& picture) {

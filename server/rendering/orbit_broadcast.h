@@ -53,7 +53,7 @@ class OrbitBroadcast {
 
   const OrbitSpec spec_;
   const RenderServices services_;
-  const std::shared_ptr<MemoryAccount> memory_;  // account of films; encoded frames have another one
+  const std::shared_ptr<WorkAccount> memory_;  // account of films; encoded frames have another one
   const std::shared_ptr<Subscribers> subscribers_ = std::make_shared<Subscribers>();
   const std::chrono::seconds frame_time_;
   std::stop_source nobody_watches_;  // requested when the last viewer disconnects

@@ -92,8 +92,8 @@ class Line {
   }
 
   const Pipeline& pipeline_;
-  const std::shared_ptr<MemoryAccount> memory_;  // account of encoded frames; films have another one
-  std::mutex mutex_;                             // guards the members below
+  const std::shared_ptr<WorkAccount> memory_;  // account of encoded frames; films have another one
+  std::mutex mutex_;                           // guards the members below
   std::condition_variable changed_;
   std::int64_t entered_ = 0, left_ = 0;
   std::map<std::int64_t, Encoded> waiting_;  // by position, until all earlier frames are delivered

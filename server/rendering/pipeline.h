@@ -6,6 +6,8 @@
 #include <stop_token>
 
 #include "server/rendering/frame.h"
+#include "server/scheduler/work_account.h"
+#include "server/scheduler/worker_pool.h"
 
 namespace orrery {
 
@@ -19,7 +21,7 @@ struct Pipeline {
   std::function<RenderResult(std::int64_t)> render;
   std::function<std::string(const Film&)> encode;      // called by several threads at once
   std::stop_token stop = {};                           // cancels encoding, which throws Cancelled
-  MemoryAccount* memory = nullptr;                     // opens the account of encoded frames; may be null
+  WorkAccount* memory = nullptr;                       // opens the account of encoded frames; may be null
   std::function<void(std::int64_t, Frame&&)> deliver;  // called one at a time, in the order of `next`
 
   // Returns once all frames are delivered. If a stage throws, delivers the earlier frames and rethrows.

@@ -18,7 +18,8 @@ Refinement::Refinement(RefinementSpec spec, const RenderServices& services, Pict
       pass_time_(pass_time),
       samples_(progressive_samples(spec_.plan)),
       known_(pictures.find(key_of(spec_.plan.samples))),
-      memory_(services.memory.open(spec_.client)) {}
+      memory_(services.memory.open(spec_.client)),
+      executor_(services.pool) {}
 
 std::string Refinement::key_of(int samples) const {
   RenderRequest request = spec_.request;
@@ -60,13 +61,14 @@ Refinement::Step Refinement::render(int samples, const std::stop_token& stop, St
   if (!progress_) {
     const SceneStore::SizeGuard measured(services_.scenes, *spec_.scene);
     progress_ = std::make_unique<ProgressiveRender>(*spec_.scene, settle(*spec_.scene, spec_.plan, stop),
-                                                    services_.pool, stop);
+                                                    executor_, stop);
   }
   const RenderStats& stats = progress_->stats();
   const std::uint64_t rays_before = stats.counts.rays.total();
   const double ms_before = done_ > 0 ? stats.build_ms + stats.trace_ms : 0;
-  progress_->refine(samples,
-                    {.stop = stop, .background = demand.priority == Priority::batch, .lease = &ticket});
+  executor_.background = demand.priority == Priority::batch;
+  executor_.lease = &ticket;
+  progress_->refine(samples, {.stop = stop});
   done_ = samples;
   Step step{.samples = samples,
             .picture = {},

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/plan/request.h"
+#include "core/render/progressive.h"
 #include "server/cache/pictures.h"
 #include "server/rendering/render_services.h"
 
@@ -13,7 +14,7 @@ namespace orrery {
 
 // Parameters of a progressive render.
 struct RefinementSpec {
-  std::shared_ptr<const PreparedScene> scene;
+  std::shared_ptr<const StoredScene> scene;
   RenderRequest request;
   Plan plan;  // plan of `request`
   std::string client;
@@ -57,7 +58,8 @@ class Refinement {
   const std::chrono::seconds pass_time_;
   const std::vector<int> samples_;  // samples per pixel after each pass
   const std::shared_ptr<const Picture> known_;
-  const std::shared_ptr<MemoryAccount> memory_;
+  const std::shared_ptr<WorkAccount> memory_;
+  PoolExecutor executor_;
   std::unique_ptr<ProgressiveRender> progress_;  // null before the first pass
   std::size_t next_ = 0;
   int done_ = 0;  // samples per pixel

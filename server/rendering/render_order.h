@@ -3,7 +3,7 @@
 #include <stop_token>
 #include <string>
 
-#include "core/image/files.h"
+#include "core/image/encode/files.h"
 #include "core/plan/request.h"
 #include "server/cache/scene_store.h"
 #include "server/telemetry/service_counters.h"

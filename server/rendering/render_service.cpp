@@ -142,11 +142,11 @@ RenderResult RenderService::render_film(Run& run, FilmStorage storage, const std
   run.ticket.emplace(queue(run, run.demand, stop));
   run.trace.stage = Stage::render;
   RenderControl control = limits_of(run.scene(), run.order.plan);
-  control.background = run.demand.priority == Priority::batch;
   control.stop = stop;
   control.used_s = [this, &run] { return run.waited_s(services_.timer); };
-  return TaskScope::current().memory->run(stop, [&] {
-    return services_.render(*run.ticket, *run.order.scene, run.order.plan, storage, control);
+  return WorkAccount::current()->run(stop, [&] {
+    return services_.render(*run.ticket, run.demand.priority, *run.order.scene, run.order.plan, storage,
+                            control);
   });
 }
 

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <memory>
 
-#include "core/render/budget.h"
+#include "core/budget/budget.h"
 #include "server/base/subscribers.h"
 #include "server/cache/pictures.h"
 #include "server/rendering/render_order.h"

@@ -5,11 +5,12 @@
 #include <chrono>
 #include <stop_token>
 
+#include "core/budget/renderer.h"
 #include "core/plan/cost.h"
-#include "core/render/renderer.h"
 #include "server/cache/scene_store.h"
 #include "server/scheduler/admission.h"
 #include "server/scheduler/ray_estimator.h"
+#include "server/scheduler/worker_pool.h"
 #include "server/telemetry/service_counters.h"
 
 namespace orrery {
@@ -56,15 +57,15 @@ struct RenderServices {
       }
   }
 
-  // Renders a frame in the slot of `ticket`. Reports the measured cost to the ticket and the size of the
-  // scene to the store. Throws the errors of render_frame().
-  RenderResult render(Admission::Ticket& ticket, const PreparedScene& scene, const Plan& plan,
-                      FilmStorage storage, const RenderControl& control) const {
-    RenderControl shared = control;
-    shared.lease = &ticket;
+  // Renders a frame in the slot of `ticket`. Frames of interactive priority have precedence on the threads.
+  // Reports the measured cost to the ticket and the size of the scene to the store. Throws the errors of
+  // render_frame().
+  RenderResult render(Admission::Ticket& ticket, Priority priority, const StoredScene& scene,
+                      const Plan& plan, FilmStorage storage, const RenderControl& control) const {
+    PoolExecutor executor(pool, priority == Priority::batch, &ticket);
     const SceneStore::SizeGuard measured(scenes, scene);
     const SettledPlan settled = settle(scene, plan, control.stop);
-    RenderResult result = render_frame(scene, settled, storage, pool, shared);
+    RenderResult result = render_frame(scene, settled, storage, executor, control);
     Plan done = *settled;
     if (result.budget) done.samples = *result.budget->settings.samples;
     done.free_samples = false;

@@ -16,7 +16,7 @@ using nlohmann::ordered_json;
 // Renders one image or the frames of an orbit to PNG files.
 class FrameWork final : public JobWork {
  public:
-  FrameWork(const std::shared_ptr<const PreparedScene>& scene, const OrbitPath& path, int frames)
+  FrameWork(const std::shared_ptr<const StoredScene>& scene, const OrbitPath& path, int frames)
       : scene_(scene), path_(path), budget_(frames), files_(static_cast<std::size_t>(frames)) {}
 
   int steps() const override { return static_cast<int>(files_.size()); }
@@ -62,14 +62,14 @@ class FrameWork final : public JobWork {
  private:
   static std::string folder(const std::string& job_id) { return job_path(job_id) + "/frames/"; }
 
-  const std::weak_ptr<const PreparedScene> scene_;  // owned by the job while it renders
+  const std::weak_ptr<const StoredScene> scene_;  // owned by the job while it renders
   OrbitPath path_;
   OrbitBudget budget_;
   std::vector<SharedBytes> files_;  // by step; empty until the step is done
 };
 
 struct FrameOrder {
-  std::shared_ptr<const PreparedScene> scene;
+  std::shared_ptr<const StoredScene> scene;
   OrbitPath path;
   int frames = 1;
 };

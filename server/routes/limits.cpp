@@ -1,7 +1,7 @@
 #include <nlohmann/json.hpp>
 
+#include "core/image/decode/picture.h"
 #include "core/params/motion.h"
-#include "core/pictures/picture.h"
 #include "core/plan/limits.h"
 #include "core/study/study.h"
 #include "server/api/option_json.h"

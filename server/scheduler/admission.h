@@ -15,10 +15,10 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/render/worker_pool.h"
 #include "server/base/errors.h"
 #include "server/base/subscribers.h"
 #include "server/base/timer.h"
+#include "server/scheduler/worker_pool.h"
 #include "server/telemetry/service_counters.h"
 
 namespace orrery {

@@ -24,7 +24,7 @@ class HandlerSlots {
   HandlerSlots(const HandlerSlots&) = delete;
 
   // Handler of one request, used by the thread that runs it. Holds a slot for its lifetime, except while a
-  // Wait exists on the same thread. Yields at interruption points.
+  // Wait exists on the same thread. Yields at checkpoints.
   class Handler final : public TimeSlice {
    public:
     // Waits for a slot. Throws Cancelled if a stop of `gone` is requested first. `state` shows the wait to

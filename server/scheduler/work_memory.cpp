@@ -32,8 +32,8 @@ class WorkMemory::Share {
   std::size_t bytes_ = 0;
 };
 
-std::shared_ptr<MemoryAccount> WorkMemory::open(const std::string& client) {
-  return MemoryAccount::open([this, client] {
+std::shared_ptr<WorkAccount> WorkMemory::open(const std::string& client) {
+  return WorkAccount::open([this, client] {
     return [share = std::make_shared<Share>(*this, client)](std::size_t bytes, bool already) {
       return share->resize(bytes, already);
     };

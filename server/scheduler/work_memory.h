@@ -6,7 +6,7 @@
 #include <mutex>
 #include <string>
 
-#include "core/base/task_scope.h"
+#include "server/scheduler/work_account.h"
 
 namespace orrery {
 
@@ -20,7 +20,7 @@ class WorkMemory {
   // Opens an empty account for work of the client. Its run() throws InputError if the work could never fit.
   // It throws ClientLimitExceeded if other work of the client holds the memory, and LimitExceeded if work of
   // other clients does.
-  std::shared_ptr<MemoryAccount> open(const std::string& client);
+  std::shared_ptr<WorkAccount> open(const std::string& client);
 
   std::size_t bytes() const;
   std::size_t most() const { return max_; }

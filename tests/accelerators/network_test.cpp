@@ -1,4 +1,4 @@
-#include "core/stages/network.h"
+#include "core/occlusion/network.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/stages/network_predictor.h"
+#include "core/occlusion/network_predictor.h"
 #include "tests/support/random.h"
 
 // Tests inference and training of the network.

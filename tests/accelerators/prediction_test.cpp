@@ -1,6 +1,6 @@
-#include "core/stages/prediction.h"
+#include "core/occlusion/prediction.h"
 
-#include "core/stages/network_predictor.h"
+#include "core/occlusion/network_predictor.h"
 #include "tests/support/agreement.h"
 #include "tests/support/covers.h"
 #include "tests/support/mixtures.h"

@@ -1,4 +1,4 @@
-#include "core/stages/reordered.h"
+#include "core/occlusion/reordered.h"
 
 #include <algorithm>
 #include <set>

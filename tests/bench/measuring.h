@@ -9,8 +9,8 @@
 #include <memory>
 #include <string>
 
+#include "core/load/asset_files.h"
 #include "core/load/load.h"
-#include "server/commands/asset_files.h"
 
 // Shared helpers of the benchmark programs.
 namespace orrery::bench {

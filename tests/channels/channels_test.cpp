@@ -30,7 +30,7 @@ Layers render_layers(const Json& json, const RenderRequest& request, const std::
     plan.channels.push_back(&channel(name));
     plan.fields |= channel(name).fields;
   }
-  return {render_frame(scene, settle(scene, plan), FilmStorage::sums, shared_pool()).film, plan.width};
+  return {render_frame(scene, settle(scene, plan), FilmStorage::sums, shared_executor()).film, plan.width};
 }
 
 RenderRequest odd_size() { return in_double(size(33, 33)); }  // the centre of a pixel is on the optical axis
@@ -133,10 +133,10 @@ TEST(Film, AccumulatesPassesToFullRender) {
   plan.channels = {&channel("depth"), &channel("object")};
   plan.fields |= channel("object").fields;
   const SettledPlan settled = settle(scene, plan);
-  const Film whole = render_frame(scene, settled, FilmStorage::sums, shared_pool()).film;
+  const Film whole = render_frame(scene, settled, FilmStorage::sums, shared_executor()).film;
 
   RenderStats stats;
-  const auto prepared = threads_backend(shared_pool())->prepare(scene, settled, stats, {});
+  const auto prepared = threads_backend(shared_executor())->prepare(scene, settled, stats, {});
   Film passes(plan.width, plan.height, FilmStorage::sums, plan.channels);
   const TileGrid grid(plan.width, plan.height);
   for (const auto& [first, samples] : {std::pair{0, 4}, {4, 1}, {5, 4}}) {
@@ -161,7 +161,7 @@ TEST(Film, ReturnsSameImageFromEveryStorage) {
   request.samples = 3;
   const SettledPlan plan = settle(scene, make_plan(scene.scene(), request));
   const auto film = [&](FilmStorage storage) {
-    return render_frame(scene, plan, storage, shared_pool()).film;
+    return render_frame(scene, plan, storage, shared_executor()).film;
   };
   const Film codes = film(FilmStorage::srgb8), floats = film(FilmStorage::linear32),
              sums = film(FilmStorage::sums);

@@ -32,7 +32,8 @@ std::vector<float> objects_seen(const Json& scene, Precision precision, const st
   const auto loaded = load(scene);
   const PreparedScene prepared(loaded);
   const Plan plan = make_plan(*loaded, request);
-  return render_frame(prepared, settle(prepared, plan), FilmStorage::sums, shared_pool()).film.values(0, 0);
+  return render_frame(prepared, settle(prepared, plan), FilmStorage::sums, shared_executor())
+      .film.values(0, 0);
 }
 
 // Returns the smallest tested number of rounding errors that explains `object` at the pixel. A result above

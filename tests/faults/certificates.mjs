@@ -49,7 +49,7 @@ export const certificateFaults = [
   {
     fault: 13,
     about: "the reported error is that of half of the samples",
-    file: "core/render/tile_halves.cpp",
+    file: "core/accuracy/tile_halves.cpp",
     from: "(2.0 * four(first[c], i) - four(all[c], i)) * share",
     to: "(2.0 * four(first[c], i) - four(all[c], i)) * (2 * share)",
     target: "test_render",
@@ -76,7 +76,7 @@ export const certificateFaults = [
   {
     fault: 13,
     about: "an upper bound ignores values that no sample has",
-    file: "core/render/unit_histogram.cpp",
+    file: "core/accuracy/unit_histogram.cpp",
     from: "double kept = std::max(mean(), 1e-18), rejected = 1;",
     to: "return mean(); double kept = 0, rejected = 1;",
     target: "test_render",
@@ -89,7 +89,7 @@ export const certificateFaults = [
   {
     fault: 13,
     about: "the variance from halves is too small",
-    file: "core/render/tile_halves.cpp",
+    file: "core/accuracy/tile_halves.cpp",
     from: "const double scale = 2.0 /",
     to: "const double scale = 1.0 /",
     target: "test_render",
@@ -107,7 +107,7 @@ export const certificateFaults = [
   {
     fault: 13,
     about: "an image uses only the bound of its last pass",
-    file: "core/render/frame.cpp",
+    file: "core/render/progressive.cpp",
     from: "if (samples_ > 0) stats_.join(before);",
     to: "",
     target: "test_render",
@@ -116,7 +116,7 @@ export const certificateFaults = [
   {
     fault: 13,
     about: "an estimate counts as a proved bound",
-    file: "core/render/budget.cpp",
+    file: "core/budget/budget.cpp",
     from: "return made_.certificate.total().rms && *made_.certificate.total().rms <= error_;",
     to: "return *made_.certificate.estimate <= error_;",
     target: "test_render",
@@ -125,7 +125,7 @@ export const certificateFaults = [
   {
     fault: 13,
     about: "pixels that reuse paths count as independent",
-    file: "core/render/certificate.cpp",
+    file: "core/accuracy/certificate.cpp",
     from: "stats.halves.upper_mean(part, reused)",
     to: "stats.halves.upper_mean(part, false)",
     target: "test_render",
@@ -134,7 +134,7 @@ export const certificateFaults = [
   {
     fault: 13,
     about: "the correlation of pixel errors is ignored",
-    file: "core/render/certificate.cpp",
+    file: "core/accuracy/certificate.cpp",
     from: "if (!reused && pixels_are_alike(stats.error))",
     to: "if (false)",
     target: "test_render",

@@ -13,7 +13,7 @@ export const structureFaults = [
   {
     fault: 11,
     about: "a predicted occluder is accepted without a test",
-    file: "core/stages/prediction.cpp",
+    file: "core/occlusion/prediction.cpp",
     from: "proposed.kernel->occlude(proposed.index, rays_, one, counts_);",
     to: "rays_.t_max.put(i, Lanes<T>(T(proposed.index < 0 ? 1 : -1)));",
     target: "test_accelerators",
@@ -22,7 +22,7 @@ export const structureFaults = [
   {
     fault: 11,
     about: "a shadow ray without a verified prediction is treated as unoccluded",
-    file: "core/stages/prediction.cpp",
+    file: "core/occlusion/prediction.cpp",
     from: "this->behind_->occlude(rays, with_active_rays(rays, active), counts);",
     to: "",
     target: "test_accelerators",

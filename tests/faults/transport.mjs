@@ -4,7 +4,7 @@ export const transportFaults = [
   {
     fault: 12,
     about: "emission hit by BSDF sampling has MIS weight 1",
-    file: "core/stages/sampled_light.cpp",
+    file: "core/lighting/sampled_light.cpp",
     from: "select(by_lobe > zero && by_light > zero, power_heuristic(by_lobe, by_light), one)",
     to: "one",
     target: "test_techniques",
@@ -49,7 +49,7 @@ export const transportFaults = [
   {
     fault: 12,
     about: "path reuse weights a second vertex by its own density alone",
-    file: "core/stages/path_reuse.cpp",
+    file: "core/reuse/path_reuse.cpp",
     from: "turn < group_; ++turn) {\n      const Array<T>& of_turn",
     to: "turn < 1; ++turn) {\n      const Array<T>& of_turn",
     target: "test_techniques",
@@ -58,7 +58,7 @@ export const transportFaults = [
   {
     fault: 12,
     about: "distributed ray tracing counts the light of lamps twice",
-    file: "core/stages/sampled_light.cpp",
+    file: "core/lighting/sampled_light.cpp",
     from: "wants_diffuse_rays_ ? shadowed_.diffuse_pdf.at(i) : zero",
     to: "zero",
     target: "test_techniques",

@@ -3,7 +3,7 @@
 const unitsByHeader = {
   "core/math/bounds.h": { test_math: ["tests/math/"] },
   "core/math/sampling.h": { test_stability: ["core/stability/"] },
-  "core/model/bound.h": { test_render: ["core/render/certificate.cpp"] },
+  "core/model/bound.h": { test_render: ["core/accuracy/certificate.cpp"] },
   "core/stability/row.h": { test_stability: ["core/stability/report.cpp", "tests/stability/"] },
   "server/cache/single_flight.h": { test_server: ["tests/server/"] },
 };

@@ -119,7 +119,7 @@ TEST(HandlerSlots, YieldsSlotDuringLongWork) {
   Queue queue(slots);
   queue.add("b");
   EXPECT_TRUE(test::eventually([&] {
-    interruption_point();
+    checkpoint();
     return slots.waiting() == 0;
   }));
   EXPECT_EQ(queue.order(), "b");

@@ -1,4 +1,4 @@
-#include "core/image/files.h"
+#include "core/image/encode/files.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "core/stages/light_tree.h"
+#include "core/lighting/light_tree.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "core/stages/power_heuristic.h"
+#include "core/lighting/power_heuristic.h"
 #include "tests/support/covers.h"
 #include "tests/support/random.h"
 #include "tests/support/tracing.h"

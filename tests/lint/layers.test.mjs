@@ -7,43 +7,15 @@ import { tmpdir } from "node:os";
 import { basename, dirname, extname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 
+import { drawRooms, kLayers } from "./rooms.mjs";
 import { selfTest } from "./self-test.mjs";
 
-const kFloors = [
-  ["core/base", "core/math"],
-  ["core/params", "core/image", "core/meshes", "core/pictures"],
-  ["core/model"],
-  [
-    "core/shapes",
-    "core/cameras",
-    "core/materials",
-    "core/lights",
-    "core/environments",
-    "core/accelerators",
-    "core/channels",
-    "core/stages",
-  ],
-  ["core/techniques"],
-  ["core/plan"],
-  ["core/prepare", "core/load"],
-  ["core/tuning"],
-  ["core/render"],
-  ["core/study"],
-  ["core/stability"],
-  ["server/base"],
-  ["server/telemetry", "server/config"],
-  ["server/scheduler"],
-  ["server/http", "server/cache"],
-  ["server/security", "server/api"],
-  ["server/rendering"],
-  ["server/jobs"],
-  ["server/app"],
-  ["server/routes"],
-  ["server/service"],
-  ["server/commands"],
-  ["server"], // main.cpp
+const kComponents = kLayers.find((rooms) => rooms.includes("core/shapes"));
+const kRegisteredRooms = [
+  ...kComponents.filter((room) => room !== "core/occlusion"),
+  "core/techniques",
+  "core/stability",
 ];
-const kRegisteredRooms = [...kFloors[3].filter((room) => room !== "core/stages"), "core/techniques", "core/stability"];
 const kGenerated = ["core/base/version.h"]; // in the build folder
 const kMaxLines = 500;
 const kTextFolders = [
@@ -65,16 +37,16 @@ const kUnread = new Set(["package-lock.json", "LICENSE", ".git"]); // .git is a 
 const kLibraries = [
   { name: "nlohmann", header: /^nlohmann\//, rooms: /^(core\/params|core\/meshes|server)\// },
   { name: "httplib", header: /^httplib\.h$/, rooms: /^(server\/http|tests)\// },
-  { name: "libpng", header: /^png\.h$/, rooms: /^core\/image\// },
-  { name: "turbojpeg", header: /^(turbojpeg|jpeglib)\.h$/, rooms: /^core\/image\// },
-  { name: "OpenImageIO", header: /^OpenImageIO\//, rooms: /^core\/pictures\/decoder\// },
-  { name: "OpenEXR", header: /^(OpenEXR\/|Imath\/|Imf|Imath|openexr)/, rooms: /^core\/image\// },
+  { name: "libpng", header: /^png\.h$/, rooms: /^core\/image\/encode\// },
+  { name: "turbojpeg", header: /^(turbojpeg|jpeglib)\.h$/, rooms: /^core\/image\/encode\// },
+  { name: "OpenImageIO", header: /^OpenImageIO\//, rooms: /^core\/image\/decode\/decoder\// },
+  { name: "OpenEXR", header: /^(OpenEXR\/|Imath\/|Imf|Imath|openexr)/, rooms: /^core\/image\/encode\// },
 ];
 // Folders that exist on one machine only. After a word or a dot, the match would be part of a relative path.
 const kMachinePath = /(?<![\w.)}\]-])(?:\/(?:work|home|root|Users|mnt)\/|[A-Z]:\\\\?Users)/;
 
 const roomOf = (path) => path.split("/").slice(0, -1).slice(0, 2).join("/");
-const floorOf = (path) => kFloors.findIndex((rooms) => rooms.includes(roomOf(path)));
+const floorOf = (path) => kLayers.findIndex((rooms) => rooms.includes(roomOf(path)));
 const isCode = (path) => /^(core|server)\/.*\.(cpp|h)$/.test(path);
 
 function listFiles(root) {
@@ -200,7 +172,7 @@ const innerFolder = ["..", "work", "checkout"].join("/"); // not an absolute pat
 const kGoodTree = {
   "core/base/a.h": "#pragma once\n#include <string>\n",
   "core/params/params.cpp": '#include <nlohmann/json.hpp>\n#include "core/base/a.h"\n',
-  "core/image/png.cpp": "#include <png.h>\n#include <turbojpeg.h>\n#include <OpenEXR/ImfRgbaFile.h>\n",
+  "core/image/encode/png.cpp": "#include <png.h>\n#include <turbojpeg.h>\n#include <OpenEXR/ImfRgbaFile.h>\n",
   "core/meshes/gltf.cpp": "#include <nlohmann/json.hpp>\n",
   "core/model/shape.h": '#include "core/base/a.h"\n#include "core/base/version.h"\n',
   "core/shapes/sphere.cpp": `#include "core/model/shape.h"\n// see ${innerFolder}, docs/home/x\n`,
@@ -267,6 +239,9 @@ const judgeSelf = () =>
 function judgeRepository() {
   const root = join(dirname(fileURLToPath(import.meta.url)), "../..");
   const problems = judge(root);
+  const drawing = "docs/pictures/rooms.svg";
+  if (readFileSync(join(root, drawing), "utf8") !== drawRooms())
+    problems.push({ path: drawing, line: 1, rule: "drawing", text: "run node tests/lint/rooms.mjs > " + drawing });
   for (const { path, line, rule, text } of problems) console.error(`${path}:${line}: ${rule}: ${text}`);
   console.log(`${problems.length} problems`);
   return problems.length;

@@ -62,28 +62,6 @@ TEST(Interruption, StopsSmoothing) {
   }));
 }
 
-// Requests a stop when the facet pass allocates its memory. No later pass may allocate memory.
-TEST(Interruption, StopsSmoothingDuringFacetPass) {
-  constexpr std::size_t kTriangles = 1000, kOfFacets = kTriangles * 3 * sizeof(Vec3d);
-  constexpr std::size_t kOfIndices = kTriangles * 3 * sizeof(std::uint32_t);
-  TriangleMesh mesh;
-  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  mesh.triangles.assign(kTriangles, {0, 1, 2});
-  const PositionIndices places = position_indices_of(mesh.positions);
-  std::stop_source source;
-  std::size_t most = 0, taken_after = 0;
-  const auto account = MemoryAccount::open([&] {
-    return [&](std::size_t bytes, bool) {
-      if (source.stop_requested() && bytes > most) taken_after += bytes - most;
-      if (bytes > most + kOfFacets / 2) source.request_stop();
-      most = std::max(most, bytes);
-      return bytes;
-    };
-  });
-  EXPECT_THROW(account->run(source.get_token(), [&] { smooth_normals(mesh, 30, places); }), Cancelled);
-  EXPECT_LT(taken_after, kOfIndices) << "only the exception may allocate memory";
-}
-
 TEST(Interruption, StopsBuildOfEveryAccelerator) {
   const auto scene = load_scene(kScene);
   for (const AcceleratorType& type : accelerator_types())

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include "core/base/task_scope.h"
 #include "core/load/load.h"
 #include "core/params/document.h"
 #include "tests/support/covers.h"
@@ -121,20 +120,6 @@ TEST(LoadMotion, CountsKeyframesBeforeAllocation) {
     EXPECT_EQ(error.problems().size(), 1u);
   }
   EXPECT_EQ(heavy.read, 1) << "each file is read once";
-}
-
-TEST(LoadMotion, SharesEqualDataAmongKeyframes) {
-  const auto bytes = [](const char* keys) {
-    Json scene = scene_of(R"([{'type': 'mesh', 'file': 'a.obj'}])");
-    scene["objects"][0]["motion"] = json(keys);
-    const auto account = MemoryAccount::open([] { return [](std::size_t most, bool) { return most; }; });
-    const auto loaded = account->run({}, [&] { return load_scene(scene.dump(), LargeMeshSource()); });
-    return account->bytes();
-  };
-  const std::size_t few = bytes("[{'time': 0}, {'time': 1}]"),
-                    vertices = LargeMeshSource().mesh_file("").positions.size();
-  EXPECT_LT(bytes("[{'time': 0}, {'time': 1}, {'time': 2}]"), few + 10'000);
-  EXPECT_GE(bytes("[{'time': 0}, {'time': 1, 'file': 'b.obj'}]"), few + vertices * sizeof(Vec3d));
 }
 
 TEST(LoadMotion, IgnoresMotionOfUnusedModels) {

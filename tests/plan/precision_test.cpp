@@ -33,7 +33,7 @@ View view(const std::shared_ptr<const Scene>& scene, Precision precision) {
   const PreparedScene prepared(scene);
   const Plan plan = make_plan(*scene, request);
   const RenderResult result =
-      render_frame(prepared, settle(prepared, plan), FilmStorage::sums, shared_pool());
+      render_frame(prepared, settle(prepared, plan), FilmStorage::sums, shared_executor());
   View seen{plan, {plan.width, plan.height, {}, result.stats}, result.film.values(0, 0)};
   seen.picture.pixels.resize(static_cast<std::size_t>(plan.width * plan.height));
   const Image image = result.film.image(PixelFormat::linear32);

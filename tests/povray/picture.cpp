@@ -4,15 +4,15 @@
 #include <cmath>
 #include <fstream>
 
-#include "core/image/files.h"
+#include "core/image/encode/files.h"
 #include "core/model/technique.h"
 #include "core/prepare/prepared_scene.h"
 
 namespace orrery {
 
 Picture render_picture(const PreparedScene& scene, const Plan& plan) {
-  WorkerPool pool(1);
-  const RenderResult result = render_frame(scene, settle(scene, plan), FilmStorage::linear32, pool);
+  ThreadExecutor executor(1);
+  const RenderResult result = render_frame(scene, settle(scene, plan), FilmStorage::linear32, executor);
   Picture picture(plan.width, plan.height);
   for (int y = 0; y < plan.height; ++y)
     for (int x = 0; x < plan.width; ++x) picture.at(x, y) = result.film.stored().linear(x, y);

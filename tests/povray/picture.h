@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "core/budget/renderer.h"
 #include "core/model/plan.h"
-#include "core/render/renderer.h"
 
 // Linear images in memory, renders of a plan, and comparison of two images.
 namespace orrery {

@@ -27,7 +27,7 @@ struct Accumulator {
       : scene(load(even_light(radiance))),
         prepared(scene),
         plan(settle(prepared, make_plan(*scene, request()))),
-        ready(threads_backend(shared_pool())->prepare(prepared, plan, stats, {})),
+        ready(threads_backend(shared_executor())->prepare(prepared, plan, stats, {})),
         film(kSide, kSide, FilmStorage::sums) {}
 
   static RenderRequest request() {

@@ -16,7 +16,7 @@ namespace {
 
 Audit audited(const Json& scene, const RenderRequest& request, int pixels, std::uint64_t draw = 0) {
   const PreparedScene prepared(load(scene));
-  return audit(prepared, request, pixels, draw, shared_pool());
+  return audit(prepared, request, pixels, draw, shared_executor());
 }
 
 // Returns the RMS error of a whole image due to limits on depth and weight.

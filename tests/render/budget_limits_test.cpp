@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "core/base/task_scope.h"
-#include "core/render/budget.h"
+#include "core/budget/budget.h"
 #include "tests/support/pictures.h"
 
 // Tests renders that end for reasons other than a met error or time budget.
@@ -34,24 +33,6 @@ TEST(ErrorBudget, IsMissedWithFewerSamplesThanRequested) {
   EXPECT_LT(*result.budget->settings.samples, 1024);
   EXPECT_FALSE(result.budget->met());
   EXPECT_NE(result.budget->reason.find("(limit "), std::string::npos) << result.budget->reason;
-}
-
-// If a copy of the film would exceed the memory limit, the render ends with the current film.
-TEST(TimeBudget, KeepsImageIfMemoryRunsOut) {
-  const auto scene = test::load(test::sample("paper"));
-  RenderRequest r = square(1200);  // 35 MB of sums
-  r.technique = "raycast";
-  r.seconds = 60;
-  const auto account = MemoryAccount::open([] {
-    return [](std::size_t bytes, bool already) {
-      if (!already && bytes > 60'000'000) throw Error("there is no more memory");
-      return bytes;
-    };
-  });
-  const RenderResult result =
-      account->run({}, [&] { return rendered(scene, r, {.used_s = [] { return 0.0; }}); });
-  EXPECT_EQ(result.budget->settings.samples, 2);
-  EXPECT_TRUE(result.budget->met()) << "the request has no error budget";
 }
 
 }  // namespace

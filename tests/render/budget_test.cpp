@@ -1,5 +1,5 @@
 // Compares renders under error and time budgets with references. The test controls the clock.
-#include "core/render/budget.h"
+#include "core/budget/budget.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "core/render/certificate.h"
+#include "core/accuracy/certificate.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
+#include "core/render/progressive.h"
 #include "core/techniques/registry.h"
 #include "tests/render/random_optics.h"
 #include "tests/support/covers.h"
@@ -19,12 +19,6 @@ namespace {
 using test::covers;
 using test::Json;
 using test::json;
-
-// Returns the seed of the random scenes. SCENES_SEED overrides the default.
-test::Random scenes_seed() {
-  const char* const asked = std::getenv("SCENES_SEED");
-  return test::Random(asked ? std::strtoull(asked, nullptr, 10) : 1);
-}
 
 RenderRequest request(int max_depth, double min_contribution = 0) {
   RenderRequest r;
@@ -83,7 +77,7 @@ void expect_within_bounds(const Json& scene, const RenderRequest& cut, Tightness
 
 TEST(Ledger, BoundsErrorOfRandomScenes) {
   covers("certificate-1");
-  test::Random random = scenes_seed();
+  test::Random random = test::scenes_seed();
   Tightness depth, threshold;
   for (int i = 0; i < 200; ++i) {
     const Json scene = test::random_optics(random);
@@ -101,7 +95,7 @@ TEST(Ledger, BoundsErrorOfRandomScenes) {
 
 TEST(RadianceRange, ContainsRadianceOfRandomScenes) {
   covers("certificate-6");
-  test::Random random = scenes_seed();
+  test::Random random = test::scenes_seed();
   for (int i = 0; i < 200; ++i) {
     const auto scene = test::load(test::random_optics(random));
     const RadianceRange& range = scene->facts.tree_radiance;
@@ -485,8 +479,8 @@ TEST(Certificate, SumsPassLedgersForWholeRender) {
   const PreparedScene prepared(loaded);
   const SettledPlan plan = settle(prepared, make_plan(*loaded, r));
   const OmissionLedger whole =
-      render_frame(prepared, plan, FilmStorage::linear32, test::shared_pool()).stats.omitted;
-  ProgressiveRender passes(prepared, plan, test::shared_pool(), {});
+      render_frame(prepared, plan, FilmStorage::linear32, test::shared_executor()).stats.omitted;
+  ProgressiveRender passes(prepared, plan, test::shared_executor(), {});
   for (const int samples : {2, 4, 8}) passes.refine(samples);
   const OmissionLedger& joined = passes.stats().omitted;
   EXPECT_EQ(joined.samples, 8);

@@ -5,8 +5,8 @@
 
 #include "core/base/error.h"
 #include "core/load/load.h"
-#include "core/tuning/staged_world.h"
-#include "core/tuning/trial.h"
+#include "core/prepare/staged_world.h"
+#include "core/prepare/trial.h"
 #include "tests/support/pictures.h"
 #include "tests/support/stopped.h"
 
@@ -30,7 +30,7 @@ TEST(Control, CountsEveryTileOnce) {
     for (int seen = largest; done > seen && !largest.compare_exchange_weak(seen, done);) {
     }
   };
-  render_frame(prepared, settle(prepared, plan), FilmStorage::srgb8, shared_pool(), control);
+  render_frame(prepared, settle(prepared, plan), FilmStorage::srgb8, shared_executor(), control);
   EXPECT_EQ(calls, 12);
   EXPECT_EQ(largest, 12);
 }
@@ -45,9 +45,9 @@ TEST(Control, StopsRenderImmediately) {
     if (++tiles == 5) stop.request_stop();
   };
   EXPECT_THROW(render_frame(prepared, settle(prepared, make_plan(*paper(), request)), FilmStorage::srgb8,
-                            shared_pool(), control),
+                            shared_executor(), control),
                Cancelled);
-  EXPECT_LT(tiles, 5 + shared_pool().threads()) << "new tiles began after the stop";
+  EXPECT_LT(tiles, 5 + shared_executor().threads()) << "new tiles began after the stop";
 }
 
 // Accelerator that forwards to another accelerator and requests a stop at the third batch.
@@ -95,10 +95,10 @@ TEST(Control, StopsInsideDeepRayTree) {
 TEST(Control, RendersCompletelyAfterStop) {
   const PreparedScene prepared(paper());
   const Plan plan = make_plan(*paper(), size(64, 64));
-  EXPECT_THROW(render_frame(prepared, settle(prepared, plan), FilmStorage::linear32, shared_pool(),
+  EXPECT_THROW(render_frame(prepared, settle(prepared, plan), FilmStorage::linear32, shared_executor(),
                             {.stop = stopped()}),
                Cancelled);
-  EXPECT_EQ(render_frame(prepared, settle(prepared, plan), FilmStorage::linear32, shared_pool())
+  EXPECT_EQ(render_frame(prepared, settle(prepared, plan), FilmStorage::linear32, shared_executor())
                 .stats.counts.rays.camera,
             4096u);
 }
@@ -125,7 +125,7 @@ TEST(Control, RendersConcurrentlyWithoutInterference) {
     callers.emplace_back([&] {
       for (int frame = 0; frame < 5; ++frame) {
         const Image image = render_frame(prepared, settle(prepared, make_plan(*paper(), size(128, 96))),
-                                         FilmStorage::linear32, shared_pool())
+                                         FilmStorage::linear32, shared_executor())
                                 .film.image(PixelFormat::linear32);
         for (int y = 0; y < 96; y += 5)
           for (int x = 0; x < 128; x += 5) wrong += image.linear(x, y) != expected.at(x, y);
@@ -138,10 +138,12 @@ TEST(Control, RendersConcurrentlyWithoutInterference) {
 TEST(Control, PreparesSceneOnce) {
   const PreparedScene prepared(load(sample("sphereflake-3")));
   const Plan plan = make_plan(prepared.scene(), size(16, 16));
-  EXPECT_GT(render_frame(prepared, settle(prepared, plan), FilmStorage::srgb8, shared_pool()).stats.build_ms,
-            0);
-  EXPECT_EQ(render_frame(prepared, settle(prepared, plan), FilmStorage::srgb8, shared_pool()).stats.build_ms,
-            0);
+  EXPECT_GT(
+      render_frame(prepared, settle(prepared, plan), FilmStorage::srgb8, shared_executor()).stats.build_ms,
+      0);
+  EXPECT_EQ(
+      render_frame(prepared, settle(prepared, plan), FilmStorage::srgb8, shared_executor()).stats.build_ms,
+      0);
 }
 
 // An orbit frame equals the image of a scene whose camera is at the same place.

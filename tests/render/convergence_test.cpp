@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/render/progressive.h"
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 
@@ -19,7 +20,7 @@ std::vector<double> errors_of(const std::shared_ptr<const Scene>& scene, RenderR
                               const std::array<std::vector<double>, 2>& truth) {
   r.samples = 512;
   const PreparedScene prepared(scene);
-  ProgressiveRender render(prepared, settle(prepared, make_plan(*scene, r)), test::shared_pool(), {});
+  ProgressiveRender render(prepared, settle(prepared, make_plan(*scene, r)), test::shared_executor(), {});
   std::vector<double> errors;
   for (int n = 8; n <= *r.samples; n *= 2) {
     render.refine(n);

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/render/budget.h"
+#include "core/budget/budget.h"
 #include "tests/support/pictures.h"
 
 namespace orrery {
@@ -21,9 +21,9 @@ RenderRequest square() {
 }
 
 Forecast extrapolated(const std::shared_ptr<const Scene>& scene, const RenderRequest& request,
-                      WorkerPool& pool = test::shared_pool(), const RenderControl& control = {}) {
+                      Executor& executor = test::shared_executor(), const RenderControl& control = {}) {
   const PreparedScene prepared(scene);
-  return forecast(prepared, settle(prepared, make_plan(*scene, request)), pool, control);
+  return forecast(prepared, settle(prepared, make_plan(*scene, request)), executor, control);
 }
 
 // Each pass doubles the samples, so a forecast may differ by one pass. Ray counts are compared per sample.
@@ -72,14 +72,14 @@ TEST(Forecast, FillsTimeBudget) {
   const auto scene = load(sample("cornell-box"));
   RenderRequest r = square();
   r.seconds = 100;
-  const Forecast told = extrapolated(scene, r, test::shared_pool(), {.used_s = [] { return 0.0; }});
+  const Forecast told = extrapolated(scene, r, test::shared_executor(), {.used_s = [] { return 0.0; }});
   EXPECT_LE(told.outcome.used_s, 100);
   EXPECT_TRUE(told.outcome.used_s > 50 || told.outcome.settings.samples == 4096) << told.outcome.used_s;
   EXPECT_TRUE(told.outcome.met());
 }
 
 TEST(Forecast, DependsOnPlanOnly) {
-  WorkerPool one(1);
+  ThreadExecutor one(1);
   for (const char* name : {"glass", "cornell-box"}) {
     const auto scene = load(sample(name));
     RenderRequest r = square();
@@ -96,7 +96,7 @@ TEST(Forecast, IgnoresLimitsForFixedSamples) {
   RenderRequest r = square();
   r.samples = 4096;
   const Forecast told =
-      extrapolated(load(sample("paper")), r, test::shared_pool(), {.max_rays = 10, .max_s = 1e-3});
+      extrapolated(load(sample("paper")), r, test::shared_executor(), {.max_rays = 10, .max_s = 1e-3});
   EXPECT_EQ(told.outcome.settings.samples, 4096);
 }
 
@@ -138,8 +138,9 @@ TEST(Forecast, SupportsSmallestImages) {
 TEST(Forecast, StopsOnCancellation) {
   std::stop_source stop;
   stop.request_stop();
-  EXPECT_THROW(extrapolated(load(sample("paper")), square(), test::shared_pool(), {.stop = stop.get_token()}),
-               Cancelled);
+  EXPECT_THROW(
+      extrapolated(load(sample("paper")), square(), test::shared_executor(), {.stop = stop.get_token()}),
+      Cancelled);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "core/image/files.h"
+#include "core/image/encode/files.h"
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 
@@ -24,7 +24,7 @@ Image picture_of(const std::string& name) {
   request.samples = 4;
   request.time = 0.6;  // objects are in motion
   return render_frame(prepared, settle(prepared, make_plan(*scene, request)), FilmStorage::srgb8,
-                      shared_pool())
+                      shared_executor())
       .film.image(PixelFormat::srgb8);
 }
 

@@ -69,8 +69,9 @@ TEST(Motion, IsIndependentOfEarlierTimes) {
     const PreparedScene prepared(scene);
     for (const double time : {0.0, 1.0, 1.5, 4.0, 2.5, 2.25, 0.0, 9.0}) {
       const Plan plan = make_plan(*scene, at_time(time, request));
-      const Image image = render_frame(prepared, settle(prepared, plan), FilmStorage::linear32, shared_pool())
-                              .film.image(PixelFormat::linear32);
+      const Image image =
+          render_frame(prepared, settle(prepared, plan), FilmStorage::linear32, shared_executor())
+              .film.image(PixelFormat::linear32);
       const Picture alone = render(scene, at_time(time));
       int wrong = 0;
       for (int y = 0; y < 72; ++y)
@@ -204,7 +205,7 @@ TEST(Motion, RendersSeveralTimesConcurrently) {
         const int i = (caller + frame) % 4;
         const Plan plan = make_plan(*scene, at_time(i, size(32, 24)));
         const Image image =
-            render_frame(prepared, settle(prepared, plan), FilmStorage::linear32, shared_pool())
+            render_frame(prepared, settle(prepared, plan), FilmStorage::linear32, shared_executor())
                 .film.image(PixelFormat::linear32);
         for (int y = 0; y < 24; ++y)
           for (int x = 0; x < 32; ++x)

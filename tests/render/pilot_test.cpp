@@ -1,9 +1,9 @@
-#include "core/render/pilot.h"
+#include "core/budget/pilot.h"
 
 #include <gtest/gtest.h>
 
+#include "core/budget/renderer.h"
 #include "core/plan/plan.h"
-#include "core/render/renderer.h"
 #include "tests/render/random_optics.h"
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
@@ -27,7 +27,7 @@ Traced traced(const Json& json, int side) {
   const auto scene = load(json);
   const PreparedScene prepared(scene);
   const SettledPlan plan = settle(prepared, make_plan(*scene, request(side)));
-  return {trace_pilot(prepared, plan, 2, shared_pool(), {}).stats, rendered(scene, request(side)).stats};
+  return {trace_pilot(prepared, plan, 2, shared_executor(), {}).stats, rendered(scene, request(side)).stats};
 }
 
 // For random scenes, the pilot's ray count predicts the ray count of the image within 10 % in at least 95 of

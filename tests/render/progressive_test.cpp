@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/model/technique.h"
+#include "core/render/progressive.h"
 #include "tests/support/pictures.h"
 
 // Tests renders whose samples are traced in several passes.
@@ -24,7 +25,7 @@ TEST(ProgressiveRender, MatchesSinglePassRender) {
       const auto scene = load(sample(name));
       const PreparedScene prepared(scene);
       const SettledPlan plan = settle(prepared, make_plan(*scene, of(12, technique)));
-      ProgressiveRender progress(prepared, plan, shared_pool(), {});
+      ProgressiveRender progress(prepared, plan, shared_executor(), {});
       std::uint64_t corners = 0;
       for (const int samples : progressive_samples(*plan)) {
         progress.refine(samples);
@@ -61,8 +62,8 @@ TEST(ProgressiveRender, ReportsErrorBitwiseReproducibly) {
       const PreparedScene prepared(scene);
       const SettledPlan plan = settle(prepared, make_plan(*scene, request));
       const auto told = [&](int threads, bool spread) {
-        WorkerPool pool(threads);
-        ProgressiveRender progress(prepared, plan, pool, {});
+        ThreadExecutor executor(threads);
+        ProgressiveRender progress(prepared, plan, executor, {});
         progress.refine(4, {.spread = spread});
         const RenderStats& stats = progress.stats();
         std::vector<double> all{

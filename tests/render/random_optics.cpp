@@ -1,5 +1,7 @@
 #include "tests/render/random_optics.h"
 
+#include <cstdlib>
+
 namespace orrery::test {
 namespace {
 
@@ -76,6 +78,11 @@ Json light(Random& random, double share) {
 }
 
 }  // namespace
+
+Random scenes_seed() {
+  const char* const asked = std::getenv("SCENES_SEED");
+  return Random(asked ? std::strtoull(asked, nullptr, 10) : 1);
+}
 
 Json random_optics(Random& random) {
   Json materials = Json::object(), objects = Json::array(), lights = Json::array();

@@ -4,8 +4,8 @@
 
 #include "core/base/error.h"
 #include "core/plan/plan.h"
-#include "core/tuning/occlusion_samples.h"
-#include "core/tuning/staged_world.h"
+#include "core/prepare/occlusion_samples.h"
+#include "core/prepare/staged_world.h"
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 #include "tests/support/scenes.h"

@@ -1,4 +1,4 @@
-#include "core/render/tile_halves.h"
+#include "core/accuracy/tile_halves.h"
 
 #include <gtest/gtest.h>
 

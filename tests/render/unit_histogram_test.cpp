@@ -1,4 +1,4 @@
-#include "core/render/unit_histogram.h"
+#include "core/accuracy/unit_histogram.h"
 
 #include <gtest/gtest.h>
 

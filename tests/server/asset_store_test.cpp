@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/hash.h"
-#include "core/image/files.h"
+#include "core/image/encode/files.h"
 
 namespace orrery {
 namespace {

@@ -104,7 +104,7 @@ class JobsTest : public testing::Test {
   Jobs::Limits limits_{
       .under_way = 4, .ended = 100, .bytes = 1 << 20, .run_time = kRunTime, .kept = kRetention};
   std::size_t bytes_a_step_ = 10;
-  const std::shared_ptr<const PreparedScene> scene_ = std::make_shared<const PreparedScene>(
+  const std::shared_ptr<const StoredScene> scene_ = std::make_shared<const StoredScene>(
       test::load(test::scene_of("{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'mirror'}",
                                 R"({'materials': {'mirror': {
                                   'type': 'reflective', 'n': [0.1, 0.1, 0.1], 'k': [4, 3, 2]}}})")));
@@ -279,7 +279,7 @@ TEST_F(JobsTest, ReportsTracedRaysToAdmission) {
   const Plan plan = make_plan(scene_->scene(), test::size(8, 8));
   {
     auto ticket = admission.enter({Priority::interactive, "a", 1e12}, {});
-    services.render(ticket, *scene_, plan, FilmStorage::srgb8, {});
+    services.render(ticket, Priority::interactive, *scene_, plan, FilmStorage::srgb8, {});
     timer_.advance(seconds(1));
   }
   const double rate = kFixedCost + static_cast<double>(meters_.rays);

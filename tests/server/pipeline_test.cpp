@@ -8,7 +8,6 @@
 #include "core/base/error.h"
 #include "server/base/errors.h"
 #include "server/scheduler/work_memory.h"
-#include "tests/support/pictures.h"
 
 // Tests memory accounting of frames, which are charged to the client from encoding until destruction.
 namespace orrery {
@@ -25,7 +24,7 @@ class PipelineMemory : public testing::Test {
       frames_.push_back(std::move(frame));
       if (frames_.size() == count) then();
     };
-    Pipeline{.pool = test::shared_pool(),
+    Pipeline{.pool = pool_,
              .background = false,
              .next = [&] { return next < count ? std::optional<std::int64_t>(next++) : std::nullopt; },
              .render =
@@ -38,8 +37,9 @@ class PipelineMemory : public testing::Test {
         .run();
   }
 
+  WorkerPool pool_{2};
   WorkMemory memory_{100 * kMega};
-  const std::shared_ptr<MemoryAccount> account_ = memory_.open("a");  // for films
+  const std::shared_ptr<WorkAccount> account_ = memory_.open("a");  // for films
   std::vector<Frame> frames_;
 };
 
@@ -56,7 +56,7 @@ TEST_F(PipelineMemory, ChargesFramesUntilDestruction) {
 TEST_F(PipelineMemory, RejectsNextFilmWhileOverLimit) {
   const auto next_film = [] {
     const MemoryCharge film(kMega);
-    interruption_point();
+    checkpoint();
   };
   run(3, 20 * kMega, [&] { EXPECT_THROW(account_->run({}, next_film), ClientLimitExceeded); });
   EXPECT_EQ(frames_.size(), 3U);

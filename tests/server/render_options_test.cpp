@@ -82,7 +82,7 @@ std::string file_of(const std::shared_ptr<const Scene>& scene, const RenderReque
   const PreparedScene prepared(scene);
   const SettledPlan plan = settle(prepared, make_plan(*scene, request));
   const FilmStorage storage = storage_for(FileFormat::exr, *plan);
-  return encode_film(render_frame(prepared, plan, storage, shared_pool()).film, FileFormat::exr);
+  return encode_film(render_frame(prepared, plan, storage, shared_executor()).film, FileFormat::exr);
 }
 
 // The cache key of an image contains an option if and only if its table row has `changes_pixels`. The

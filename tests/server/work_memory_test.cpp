@@ -8,8 +8,8 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/image/image.h"
-#include "core/render/worker_pool.h"
 #include "server/base/errors.h"
+#include "server/scheduler/worker_pool.h"
 
 // Tests memory accounts and their limits.
 namespace orrery {
@@ -19,7 +19,7 @@ constexpr std::size_t kMega = 1 << 20;
 
 std::vector<char> block(std::size_t bytes) { return std::vector<char>(bytes); }
 
-TEST(MemoryAccount, ChargesScopedAllocationsUntilFreed) {
+TEST(WorkAccount, ChargesScopedAllocationsUntilFreed) {
   WorkMemory memory(100 * kMega);
   const auto account = memory.open("a");
   EXPECT_EQ(account->bytes(), 0u);
@@ -33,7 +33,7 @@ TEST(MemoryAccount, ChargesScopedAllocationsUntilFreed) {
   EXPECT_EQ(account->bytes(), 0u);
 }
 
-TEST(MemoryAccount, CountsEveryFormOfNew) {
+TEST(WorkAccount, CountsEveryFormOfNew) {
   struct alignas(256) Wide {
     char bytes[256];
   };
@@ -65,17 +65,15 @@ TEST(MemoryAccount, CountsEveryFormOfNew) {
   });
 }
 
-TEST(MemoryAccount, ChargesAllocationsOfWorkersAndImages) {
+TEST(WorkAccount, ChargesAllocationsOfWorkersAndImages) {
   WorkMemory memory(100 * kMega);
   const auto account = memory.open("a");
   WorkerPool pool(2);
   std::vector<std::vector<char>> blocks(16);
   account->run({}, [&] {
     parallel_for_each(8, 1, [&](std::size_t i) { blocks[i] = block(kMega); });
-    pool.for_each(8, false, [&](int step, int, TimeSlice&) {
-      blocks[8 + static_cast<std::size_t>(step)] = block(kMega);
-      return true;
-    });
+    pool.for_each(8, false,
+                  [&](int step, int) { blocks[8 + static_cast<std::size_t>(step)] = block(kMega); });
   });
   EXPECT_GE(account->bytes(), 16 * kMega);
   blocks.clear();
@@ -84,14 +82,14 @@ TEST(MemoryAccount, ChargesAllocationsOfWorkersAndImages) {
   EXPECT_GE(account->bytes(), 12 * kMega);
 }
 
-TEST(MemoryAccount, ReleasesMemoryDespiteLiveAllocations) {
+TEST(WorkAccount, ReleasesMemoryDespiteLiveAllocations) {
   WorkMemory memory(100 * kMega);
   std::vector<char> kept = memory.open("a")->run({}, [] { return block(10 * kMega); });
   EXPECT_EQ(memory.bytes(), 0u);
   std::vector<char>().swap(kept);
 }
 
-TEST(MemoryAccount, ReleasesSettledBytes) {
+TEST(WorkAccount, ReleasesSettledBytes) {
   WorkMemory memory(100 * kMega);
   const auto account = memory.open("a");
   const std::vector<char> kept = account->run({}, [] { return block(10 * kMega); });
@@ -104,8 +102,8 @@ TEST(MemoryAccount, ReleasesSettledBytes) {
   EXPECT_GE(memory.bytes(), 30 * kMega);
 }
 
-// Small allocations never fail. Work above the limit ends at its next interruption point.
-TEST(MemoryAccount, InterruptsWorkOfManySmallBlocks) {
+// Small allocations never fail. Work above the limit ends at its next checkpoint.
+TEST(WorkAccount, InterruptsWorkOfManySmallBlocks) {
   WorkMemory memory(2 * kMega);
   const auto account = memory.open("a");
   std::vector<std::unique_ptr<int>> blocks;
@@ -113,17 +111,17 @@ TEST(MemoryAccount, InterruptsWorkOfManySmallBlocks) {
                             [&] {
                               for (;;) {
                                 for (int i = 0; i < 100; ++i) blocks.push_back(std::make_unique<int>(i));
-                                interruption_point();
+                                checkpoint();
                               }
                             }),
                InputError);
   EXPECT_LT(account->bytes(), kMega + 100'000);
   blocks.clear();
   blocks.shrink_to_fit();
-  account->run({}, [] { interruption_point(); });  // the account is below its limit again
+  account->run({}, [] { checkpoint(); });  // the account is below its limit again
 }
 
-TEST(InterruptionPoint, ThrowsOnceStopIsRequested) {
+TEST(Checkpoint, ThrowsOnceStopIsRequested) {
   WorkMemory memory(100 * kMega);
   std::stop_source source;
   const std::stop_token stop = source.get_token();
@@ -131,17 +129,17 @@ TEST(InterruptionPoint, ThrowsOnceStopIsRequested) {
   EXPECT_THROW(memory.open("a")->run(stop,
                                      [&] {
                                        for (;; ++steps) {
-                                         interruption_point();
+                                         checkpoint();
                                          if (steps == 3) source.request_stop();
                                        }
                                      }),
                Cancelled);
   EXPECT_EQ(steps, 4);
-  interruption_point();  // outside of any account
+  checkpoint();  // outside of any account
 }
 
 // Returns the kind and limit of the error when `account` charges `bytes`, or "" if the charge succeeds.
-std::string refusal_of(const std::shared_ptr<MemoryAccount>& account, std::size_t bytes) {
+std::string refusal_of(const std::shared_ptr<WorkAccount>& account, std::size_t bytes) {
   try {
     account->run({}, [&] { MemoryCharge charge(bytes); });
     return "";

@@ -21,7 +21,7 @@ namespace {
 
 RenderResult made(const PreparedScene& scene, const RenderRequest& request) {
   return render_frame(scene, settle(scene, make_plan(scene.scene(), request)), FilmStorage::linear32,
-                      shared_pool());
+                      shared_executor());
 }
 
 Chart chart_of(const Json& scene, const RenderRequest& view, const Study::Extent& extent) {

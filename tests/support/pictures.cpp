@@ -15,10 +15,10 @@ double distance(const Vec3f& a, const Vec3f& b) {
   return std::isfinite(d.x + d.y + d.z) ? max_component(d) : std::numeric_limits<double>::infinity();
 }
 
-RenderResult rendered_by(WorkerPool& pool, const std::shared_ptr<const Scene>& scene,
+RenderResult rendered_by(Executor& executor, const std::shared_ptr<const Scene>& scene,
                          const RenderRequest& request, const RenderControl& control) {
   const PreparedScene prepared(scene);
-  return render_frame(prepared, settle(prepared, make_plan(*scene, request)), FilmStorage::linear32, pool,
+  return render_frame(prepared, settle(prepared, make_plan(*scene, request)), FilmStorage::linear32, executor,
                       control);
 }
 
@@ -36,9 +36,9 @@ int Picture::brighter_than(float level) const {
   return count;
 }
 
-WorkerPool& shared_pool() {
-  static WorkerPool pool(2);
-  return pool;
+Executor& shared_executor() {
+  static ThreadExecutor executor(2);
+  return executor;
 }
 
 Picture render(const Json& scene, const RenderRequest& request, int threads) {
@@ -46,9 +46,9 @@ Picture render(const Json& scene, const RenderRequest& request, int threads) {
 }
 
 Picture render(const std::shared_ptr<const Scene>& scene, const RenderRequest& request, int threads) {
-  std::unique_ptr<WorkerPool> own;
-  if (threads > 0) own = std::make_unique<WorkerPool>(threads);
-  const RenderResult result = rendered_by(own ? *own : shared_pool(), scene, request, {});
+  std::unique_ptr<ThreadExecutor> own;
+  if (threads > 0) own = std::make_unique<ThreadExecutor>(threads);
+  const RenderResult result = rendered_by(own ? *own : shared_executor(), scene, request, {});
   Picture picture{result.film.width(), result.film.height(), {}, result.stats};
   picture.pixels.resize(static_cast<std::size_t>(picture.width * picture.height));
   const Image image = result.film.image(PixelFormat::linear32);
@@ -58,7 +58,7 @@ Picture render(const std::shared_ptr<const Scene>& scene, const RenderRequest& r
 
 RenderResult rendered(const std::shared_ptr<const Scene>& scene, const RenderRequest& request,
                       const RenderControl& control) {
-  return rendered_by(shared_pool(), scene, request, control);
+  return rendered_by(shared_executor(), scene, request, control);
 }
 
 std::vector<double> linear_values(const Film& film) {

@@ -2,11 +2,11 @@
 
 #include <vector>
 
+#include "core/budget/renderer.h"
 #include "core/plan/plan.h"
-#include "core/render/renderer.h"
 #include "tests/support/scenes.h"
 
-// Images of whole scenes, rendered through plan, tiles and pool.
+// Images of whole scenes, rendered through plan, tiles and executor.
 namespace orrery::test {
 
 struct Picture {
@@ -25,7 +25,7 @@ struct Picture {
 Picture render(const Json& scene, const RenderRequest& request = {}, int threads = 0);
 Picture render(const std::shared_ptr<const Scene>& scene, const RenderRequest& request = {}, int threads = 0);
 
-// Renders a plan of the scene on the shared pool. The film is linear, unless a budget requires sums.
+// Renders a plan of the scene on the shared executor. The film is linear, unless a budget requires sums.
 RenderResult rendered(const std::shared_ptr<const Scene>& scene, const RenderRequest& request = {},
                       const RenderControl& control = {});
 // Returns the linear values of all pixels and channels. REQUIRES: as for Film::image(linear32).
@@ -35,7 +35,7 @@ std::vector<double> shown(std::vector<double> linear);
 double rms_difference(const std::vector<double>& a, const std::vector<double>& b);
 
 // Returns the pool of two threads that tests share.
-WorkerPool& shared_pool();
+Executor& shared_executor();
 
 // Returns the largest difference of two images of equal size in any channel, or infinity if a difference is
 // not finite.

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/stages/light_tree.h"
+#include "core/lighting/light_tree.h"
 #include "tests/support/covers.h"
 #include "tests/support/materials.h"
 #include "tests/support/tracing.h"

@@ -9,10 +9,10 @@
 #include "core/accelerators/registry.h"
 #include "core/base/clock.h"
 #include "core/base/task_scope.h"
+#include "core/budget/renderer.h"
 #include "core/meshes/repair.h"
 #include "core/params/document.h"
 #include "core/plan/plan.h"
-#include "core/render/renderer.h"
 #include "core/render/views.h"
 #include "tests/bench/measuring.h"
 #include "tests/meshes/writers.h"
@@ -110,10 +110,6 @@ std::string glb_of(const TriangleMesh& mesh) {
   return glb + std::string("BIN\0", 4) + data;
 }
 
-std::shared_ptr<MemoryAccount> open_account() {
-  return MemoryAccount::open([] { return [](std::size_t bytes, bool) { return bytes; }; });
-}
-
 // Runs the stage and requests a stop after `ms` milliseconds. Returns the milliseconds from the request until
 // the stage threw Cancelled, or nullopt if the stage ended before the request.
 std::optional<double> stop_after(const Stage& stage, double ms) {
@@ -126,7 +122,8 @@ std::optional<double> stop_after(const Stage& stage, double ms) {
     source.request_stop();
   });
   try {
-    open_account()->run(stop, [&] { stage(stop); });
+    const TaskScope scope({nullptr, &stop});
+    stage(stop);
   } catch (const Cancelled&) {
     const auto ended = Clock::now();
     stopper.join();
@@ -139,7 +136,7 @@ void measure(const std::string& name, int times, const Stage& stage) {
   double whole_ms = 0;
   for (int i = 0; i < 2; ++i) {  // the first run is a warm-up
     const auto start = Clock::now();
-    open_account()->run({}, [&] { stage({}); });
+    stage({});
     whole_ms = milliseconds_since(start);
   }
   std::vector<double> took;
@@ -191,12 +188,12 @@ void measure_structures(int times) {
 void measure_rendering(int times) {
   const OneMesh source(sheet(30));
   const PreparedScene scene(load_scene(scene_text(""), source));
-  WorkerPool pool;
+  ThreadExecutor executor;
   const SettledPlan plan = settle(scene, make_plan(scene.scene(), {}));
   measure("tracing", times, [&](const std::stop_token& stop) {
-    render_frame(scene, plan, FilmStorage::linear32, pool, {.stop = stop});
+    render_frame(scene, plan, FilmStorage::linear32, executor, {.stop = stop});
   });
-  const Film film = std::move(render_frame(scene, plan, FilmStorage::linear32, pool).film);
+  const Film film = std::move(render_frame(scene, plan, FilmStorage::linear32, executor).film);
   for (const auto& [name, format] :
        {std::pair{"PNG", FileFormat::png}, {"JPEG", FileFormat::jpeg}, {"EXR", FileFormat::exr}})
     measure(name, times, [&, f = format](const std::stop_token&) { encode_film(film, f); });

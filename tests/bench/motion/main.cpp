@@ -5,7 +5,7 @@
 #include "core/model/camera.h"
 #include "core/plan/plan.h"
 #include "core/prepare/geometry.h"
-#include "core/tuning/trial.h"
+#include "core/prepare/trial.h"
 #include "tests/bench/measuring.h"
 
 // Compares a BVH that is refitted frame by frame to the motion of a scene with a BVH built for the last

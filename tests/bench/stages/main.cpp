@@ -3,10 +3,10 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "core/occlusion/reordered.h"
 #include "core/plan/plan.h"
-#include "core/stages/reordered.h"
-#include "core/tuning/staged_world.h"
-#include "core/tuning/trial.h"
+#include "core/prepare/staged_world.h"
+#include "core/prepare/trial.h"
 #include "tests/bench/measuring.h"
 #include "tests/support/random.h"
 

@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/accelerators/registry.h"
+#include "core/budget/renderer.h"
 #include "core/plan/plan.h"
 #include "core/prepare/geometry.h"
-#include "core/render/renderer.h"
-#include "core/tuning/trial.h"
+#include "core/prepare/trial.h"
 #include "tests/bench/measuring.h"
 #include "tests/support/batches.h"
 #include "tests/support/random.h"

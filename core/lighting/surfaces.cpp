@@ -1,0 +1,63 @@
+#include "core/lighting/surfaces.h"
+
+#include <algorithm>
+
+namespace orrery {
+namespace {
+
+template <class T>
+void find_objects(const Scene& scene, const LaneGroups& groups, HitBatch<T>& hits, SurfaceBatch<T>& surface) {
+  const auto resting = scene.object_count - static_cast<int>(scene.instances.size());
+  for (const int i : groups)
+    for (int lane = i; lane < i + kWidth<T>; ++lane) {
+      surface.object[lane] = -1;
+      hits.instance[lane] = kNoInstance;
+      const IndexOf<T> primitive = hits.primitive[lane];
+      if (primitive == kNoPrimitive) continue;
+      surface.object[lane] = scene.object_runs[scene.object_run_of(primitive)].object;
+      if (surface.object[lane] >= resting) hits.instance[lane] = surface.object[lane] - resting;
+    }
+}
+
+template <class T>
+void find_footprints(const PathBatch<T>& paths, const LaneGroups& groups, const HitBatch<T>& hits,
+                     SurfaceBatch<T>& surface) {
+  for (const int i : groups) surface.footprint.put(i, paths.width.at(i) + paths.spread.at(i) * hits.t.at(i));
+}
+
+}  // namespace
+
+template <class T>
+LaneGroups find_surfaces(const Geometry<T>& geometry, const SurfaceFields& fields, const PathBatch<T>& paths,
+                         const LaneGroups& groups, HitBatch<T>& hits, SurfaceBatch<T>& surface,
+                         Vec3Array<T>& radiance) {
+  using N = Lanes<T>;
+  LaneGroups met;
+  const Vec3<N> background(geometry.background);
+  const N zero(T(0));
+  for (const int i : groups) {
+    const IndexLanes<T> primitive = load_index<T>(hits.primitive, i);
+    const auto missed = mask_cast<N>(primitive == kNoPrimitive);
+    radiance.put(i, select(missed, background, Vec3<N>(zero)));
+    if (all(missed)) continue;
+    met.add(i);
+    find_materials(geometry, hits, i, surface);
+  }
+  for (const auto& shapes : geometry.shapes) shapes->surface(paths.rays, hits, met, surface);
+  if (fields.parameters)
+    for (const auto& shapes : geometry.shapes) shapes->parameters(paths.rays, met, hits, surface);
+  if (fields.identity) find_objects(*geometry.scene, met, hits, surface);
+  if (fields.footprint) find_footprints(paths, met, hits, surface);
+  if (fields.travelled)
+    for (const int i : met) surface.travelled.put(i, hits.t.at(i));
+  return met;
+}
+
+template LaneGroups find_surfaces(const Geometry<float>&, const SurfaceFields&, const PathBatch<float>&,
+                                  const LaneGroups&, HitBatch<float>&, SurfaceBatch<float>&,
+                                  Vec3Array<float>&);
+template LaneGroups find_surfaces(const Geometry<double>&, const SurfaceFields&, const PathBatch<double>&,
+                                  const LaneGroups&, HitBatch<double>&, SurfaceBatch<double>&,
+                                  Vec3Array<double>&);
+
+}  // namespace orrery

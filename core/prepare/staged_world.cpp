@@ -1,0 +1,44 @@
+#include "core/prepare/staged_world.h"
+
+#include "core/base/clock.h"
+#include "core/occlusion/reordered.h"
+#include "core/prepare/occlusion_samples.h"
+
+namespace orrery {
+namespace {
+
+template <class T>
+PredictorPtr<T> network_for(PreparedScene::Parts& parts, const World<T>& world, const Plan& plan,
+                            double& build_ms, std::stop_token stop) {
+  const auto lock = lock_unless(parts.trying, stop);
+  PredictorPtr<T>& network = made_of<T>(parts).network;
+  if (!network) {
+    const auto start = Clock::now();
+    network = network_predictor<T>(sample_occlusion(world, plan, stop));
+    build_ms += milliseconds_since(start);
+  }
+  return network;
+}
+
+}  // namespace
+
+template <class T>
+World<T> staged_world(PreparedScene::Parts& parts, const SettledPlan& settled, double& build_ms,
+                      std::stop_token stop) {
+  const Plan& plan = *settled;
+  const World<T> bare = world_for<T>(parts, *plan.accelerator, plan.exposure(), build_ms, stop);
+  const PrimitiveList<T>& primitives = bare.geometry->primitives;
+  auto asked = plan.reorder ? reordered(bare.accelerator, plan.shutter > 0) : bare.accelerator;
+  if (plan.prediction == Prediction::last)
+    asked = predicted_by_last(primitives, std::move(asked));
+  else if (plan.prediction == Prediction::random)
+    asked = predicted(primitives, std::move(asked), random_predictor<T>(static_cast<int>(primitives.size())));
+  else if (plan.prediction == Prediction::network)
+    asked = predicted(primitives, std::move(asked), network_for(parts, bare, plan, build_ms, stop));
+  return {bare.geometry, asked};
+}
+
+template World<float> staged_world(PreparedScene::Parts&, const SettledPlan&, double&, std::stop_token);
+template World<double> staged_world(PreparedScene::Parts&, const SettledPlan&, double&, std::stop_token);
+
+}  // namespace orrery
