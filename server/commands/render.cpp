@@ -63,45 +63,45 @@ int render(const RenderOptions& options) {
       throw InputError("--certificate", "must differ from --output (got " + *options.certificate + ")");
     require_writable(*options.certificate);
   }
-  RunStats stats;
+  CommandCost cost;
   auto start = Clock::now();
   std::optional<ProgressBar> bar(std::in_place, "tiles");
   bar->say("reading " + options.render.scene);
   const PreparedScene scene(load_scene_file(options.render.scene));
-  stats.load_ms = milliseconds_since(start);
+  cost.load_ms = milliseconds_since(start);
   const SignalWatch signals;  // until here, signals end the process
   Plan plan = make_plan(scene.scene(), request);
   ThreadExecutor executor(options.threads);
-  stats.threads = executor.threads();
+  cost.threads = executor.threads();
 
   const double cpu_before = process_cpu_ms();
-  const RenderResult result = render_with_progress(scene, plan, format, executor, signals, begin, *bar);
+  RenderResult result = render_with_progress(scene, plan, format, executor, signals, begin, *bar);
   bar.reset();
-  stats.render_cpu_s = (process_cpu_ms() - cpu_before) / 1000;
-  stats.render = result.stats;
-  stats.certificate = result.certificate;
-  stats.budget = result.budget;
+  cost.render_cpu_s = (process_cpu_ms() - cpu_before) / 1000;
   for (const Problem& p : find_warnings(scene.scene(), plan, result.stats.counts))
     std::cerr << "orrery: warning: " << p.text() << "\n";
   plan = made_plan(std::move(plan), result.budget);
   if (options.output) {
     start = Clock::now();
     const std::string bytes = encode_film(result.film, format);
-    stats.encode_ms = milliseconds_since(start);
-    if (stats.budget) {
-      stats.budget->end_at(milliseconds_since(begin) / 1000);
-      require_met(*stats.budget, stats.certificate);
+    cost.encode_ms = milliseconds_since(start);
+    if (result.budget) {
+      result.budget->end_at(milliseconds_since(begin) / 1000);
+      require_met(*result.budget, result.certificate);
     }
     write_file(*options.output, bytes);
   }
-  if (is_missed(stats.budget))
-    std::cerr << "orrery: warning: budget missed: " << stats.budget->reason << "\n";
+  if (is_missed(result.budget))
+    std::cerr << "orrery: warning: budget missed: " << result.budget->reason << "\n";
+  ImageResults results = results_of(result);
+  results.plan = &plan;
+  results.cost = &cost;
   if (options.certificate)
-    write_file(*options.certificate, certificate_file_json(scene.scene(), plan, stats).dump(2) + "\n");
+    write_file(*options.certificate, certificate_file_json(scene.scene(), results).dump(2) + "\n");
   if (options.stats == "json")
-    std::cout << stats_json(plan, stats).dump() << "\n";
+    std::cout << stats_json(results).dump() << "\n";
   else if (!options.stats.empty() || !options.output)
-    std::cout << stats_text(plan, stats);
+    std::cout << result_lines(results);
   return kDone;
 }
 

@@ -10,7 +10,7 @@ namespace orrery {
 
 void OrbitBudget::add(const Scene& scene, const RenderResult& frame, OrbitPath& path) {
   const int number = next_++;
-  frames_[static_cast<std::size_t>(number)] = {frame.certificate.total(), frame.certificate.space};
+  bounds_[static_cast<std::size_t>(number)] = frame.certificate.total();
   if (frame.budget) {
     of_first_ = frame.budget;
     plan_ = query_of(scene, frame.budget->settings);
@@ -21,19 +21,11 @@ void OrbitBudget::add(const Scene& scene, const RenderResult& frame, OrbitPath& 
   missed.error_met = false;
   missed.reason = "frame " + std::to_string(number) +
                   " with the settings of the first frame has an error of " +
-                  (at(number).bound.rms ? "up to " + rounded(*at(number).bound.rms) : "unknown size");
+                  (at(number).rms ? "up to " + rounded(*at(number).rms) : "unknown size");
   require_met(missed, frame.certificate);
 }
 
-nlohmann::ordered_json OrbitBudget::bound_json(int frame) const {
-  nlohmann::ordered_json json = orrery::bound_json(at(frame).bound);
-  json["space"] = name_of(at(frame).space);
-  return json;
-}
-
-bool OrbitBudget::keeps_error(int frame) const {
-  return at(frame).bound.rms && *at(frame).bound.rms <= of_first_->error;
-}
+bool OrbitBudget::keeps_error(int frame) const { return at(frame).rms && *at(frame).rms <= of_first_->error; }
 
 nlohmann::ordered_json OrbitBudget::json(int frames) const {
   if (!of_first_) return nullptr;
@@ -43,7 +35,7 @@ nlohmann::ordered_json OrbitBudget::json(int frames) const {
   std::optional<double> largest = 0;
   for (int i = 0; i < frames; ++i) {
     frames_met += keeps_error(i);
-    const auto& rms = at(i).bound.rms;
+    const auto& rms = at(i).rms;
     largest = largest && rms ? std::optional(std::max(*largest, *rms)) : std::nullopt;
   }
   json["frames_met"] =

@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "server/api/error_report.h"
 #include "server/api/frame_path.h"
 #include "server/api/render_options.h"
 #include "server/http/field_list.h"
@@ -142,26 +141,21 @@ std::string server_timing(const Timing& timing) {
   return text;
 }
 
-void set_warnings(Response& response, std::span<const Problem> warnings) {
-  std::string text;
-  for (const Problem& p : warnings) text += (text.empty() ? "" : "; ") + p.text();
-  if (!text.empty()) response.set("Orrery-Warning", std::move(text));
+ImageResults results_of(const Picture& picture) {
+  return {.stats = &picture.stats,
+          .certificate = &picture.certificate,
+          .budget = picture.budget ? &*picture.budget : nullptr,
+          .warnings = picture.warnings};
 }
 
-void add_with_former_name(Fields& fields, const std::string& name, const std::string& value) {
-  for (const char* prefix : {"Orrery-", "X-"}) fields.emplace_back(prefix + name, value);
-}
-
-void add_accuracy(Fields& fields, const Picture& picture) {
-  if (picture.stats.error.known()) add_with_former_name(fields, "RMSE", error_text(picture.stats));
-  fields.emplace_back("Orrery-Error-Bound", bound_text(picture.certificate));
-  if (const std::string bias = bias_text(picture.certificate); !bias.empty())
-    add_with_former_name(fields, "Bias", bias);
+void set_results(Response& response, const ImageResults& results) {
+  for (auto& [name, value] : result_headers(&ResultOutputs::image, results))
+    response.set(name, std::move(value));
 }
 
 Response picture_response(std::string_view type, const Rendered& rendered, const RequestTrace& trace) {
   Response response = text_response(200, type, {rendered.picture, rendered.picture->bytes});
-  Fields fields;
+  ImageResults results = results_of(*rendered.picture);
   std::string told = server_timing(trace.timing);
   if (!told.empty()) told += ", ";
   if (rendered.made_now) {
@@ -176,22 +170,18 @@ Response picture_response(std::string_view type, const Rendered& rendered, const
         static_cast<unsigned long long>(work.primitive_tests));
     told += text;
     response.rays = stats.counts.rays.total();
-    add_with_former_name(fields, "Rays", std::to_string(response.rays));
+    results.rays = response.rays;
   } else {
     told += "kept;desc=\"cached from another request\"";
   }
-  add_accuracy(fields, *rendered.picture);
-  for (auto& [name, value] : fields) response.set(name, std::move(value));
+  set_results(response, results);
   response.set("Server-Timing", std::move(told));
-  set_warnings(response, rendered.picture->warnings);
   return response;
 }
 
-void set_budget(Response& response, std::string_view type, const Scene& scene, const Picture& picture,
-                const std::string& prefix) {
-  if (!picture.budget) return;
-  response.set("Orrery-Budget", budget_text(*picture.budget));
-  if (type != "image/png") return;
+void set_content_location(Response& response, std::string_view type, const Scene& scene,
+                          const Picture& picture, const std::string& prefix) {
+  if (!picture.budget || type != "image/png") return;
   response.set("Content-Location", frame_path(prefix, scene.id, query_of(scene, picture.budget->settings)));
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/plan/request.h"
+#include "server/api/results.h"
 #include "server/app/app.h"
 #include "server/routes/router.h"
 
@@ -37,25 +38,19 @@ std::string_view negotiate(const Request& request, std::span<const std::string_v
 // Returns the nonzero steps in ms as a Server-Timing value: "load;dur=1.25, render;dur=40.1".
 std::string server_timing(const Timing& timing);
 
-// Sets Orrery-Warning unless `warnings` is empty.
-void set_warnings(Response& response, std::span<const Problem> warnings);
+// Returns statistics, certificate, budget and warnings of the image, which must outlive the returned object.
+ImageResults results_of(const Picture& picture);
+// Sets the headers of the results that are known.
+void set_results(Response& response, const ImageResults& results);
 
-// Adds Orrery-NAME, and X-NAME for clients of version 0.1.
-void add_with_former_name(Fields& fields, const std::string& name, const std::string& value);
-
-// Adds the headers of an image for its error bound, its RMSE if estimated from the samples, and its bias if
-// any.
-void add_accuracy(Fields& fields, const Picture& picture);
-
-// Returns a response with the image, Server-Timing, Orrery-Warning and the headers of add_accuracy(). If the
-// image was rendered for this request, Server-Timing includes the accelerator and its counted work, and
-// Orrery-Rays is set.
+// Returns a response with the image, Server-Timing and the headers of its results. If the image was rendered
+// for this request, Server-Timing includes the accelerator and its counted work, and the rays are a result.
 Response picture_response(std::string_view type, const Rendered& rendered, const RequestTrace& trace);
 
-// Sets the headers of an image with a budget: Orrery-Budget with the outcome and, for PNG, Content-Location.
-// Content-Location is a URL below `prefix` that returns the same bytes without a budget.
-void set_budget(Response& response, std::string_view type, const Scene& scene, const Picture& picture,
-                const std::string& prefix);
+// Sets Content-Location if the image is a PNG with a budget: a URL below `prefix` that returns the same bytes
+// without a budget.
+void set_content_location(Response& response, std::string_view type, const Scene& scene,
+                          const Picture& picture, const std::string& prefix);
 
 Response json_answer(int status, const nlohmann::ordered_json& json);
 

@@ -27,7 +27,7 @@ Response frame(App& app, Request& request) {
   } else {
     const Rendered rendered = app.renders().render(order, trace);
     response = picture_response("image/png", rendered, trace);
-    set_budget(response, "image/png", scene, *rendered.picture, request.prefix);
+    set_content_location(response, "image/png", scene, *rendered.picture, request.prefix);
     // Another instance may have a higher limit on rays and meet the budget.
     lasts = lasts && !is_missed(rendered.picture->budget);
   }

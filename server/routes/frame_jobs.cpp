@@ -2,6 +2,7 @@
 
 #include "core/base/number.h"
 #include "core/params/params.h"
+#include "server/api/results.h"
 #include "server/rendering/orbit_budget.h"
 #include "server/rendering/picture_key.h"
 #include "server/routes/job_answers.h"
@@ -17,12 +18,17 @@ using nlohmann::ordered_json;
 class FrameWork final : public JobWork {
  public:
   FrameWork(const std::shared_ptr<const StoredScene>& scene, const OrbitPath& path, int frames)
-      : scene_(scene), path_(path), budget_(frames), files_(static_cast<std::size_t>(frames)) {}
+      : scene_(scene),
+        path_(path),
+        budget_(frames),
+        files_(static_cast<std::size_t>(frames)),
+        results_(static_cast<std::size_t>(frames)) {}
 
   int steps() const override { return static_cast<int>(files_.size()); }
   RenderRequest request(int step) const override { return path_.at(step); }
   FilmStorage storage() const override { return FilmStorage::srgb8; }
   void add(const RenderResult& rendered) override {
+    results_[added_++] = result_members(&ResultOutputs::job_step, results_of(rendered)).dump();
     if (const auto scene = scene_.lock()) budget_.add(scene->scene(), rendered, path_);
   }
   std::string encode(const Film& film) const override { return encode_film(film, FileFormat::png); }
@@ -44,7 +50,9 @@ class FrameWork final : public JobWork {
       fields["budget"] = std::move(budget);
     return fields;
   }
-  ordered_json step_fields(int step) const override { return {{"bound", budget_.bound_json(step)}}; }
+  ordered_json step_fields(int step) const override {
+    return ordered_json::parse(results_[static_cast<std::size_t>(step)]);
+  }
   JobResult result(const std::string& job_id, std::string_view path) const override {
     const std::string begin = folder(job_id);
     if (path.starts_with(begin)) {
@@ -65,7 +73,9 @@ class FrameWork final : public JobWork {
   const std::weak_ptr<const StoredScene> scene_;  // owned by the job while it renders
   OrbitPath path_;
   OrbitBudget budget_;
-  std::vector<SharedBytes> files_;  // by step; empty until the step is done
+  std::vector<SharedBytes> files_;    // by step; empty until the step is done
+  std::vector<std::string> results_;  // by step, as JSON text; empty until the step is added
+  std::size_t added_ = 0;
 };
 
 struct FrameOrder {

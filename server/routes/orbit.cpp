@@ -5,7 +5,6 @@
 #include "core/base/number.h"
 #include "core/plan/plan.h"
 #include "core/plan/warnings.h"
-#include "server/api/error_report.h"
 #include "server/app/app.h"
 #include "server/rendering/picture_key.h"
 #include "server/routes/answers.h"
@@ -57,20 +56,24 @@ OrbitSpec read_orbit(App& app, const Request& request) {
   return spec;
 }
 
+ImageResults results_of(const Frame& frame) {
+  return {.stats = &frame.stats, .certificate = &frame.certificate, .rays = frame.stats.counts.rays.total()};
+}
+
 nlohmann::ordered_json header_of(const OrbitFrame& frame, std::int64_t skipped) {
   const Frame& picture = frame.picture;
-  return {{"frame", frame.frame},
-          {"azimuth_degrees", frame.orbit.azimuth_degrees},
-          {"elevation_degrees", frame.orbit.elevation_degrees},
-          {"distance", frame.orbit.distance},
-          {"time", frame.time},
-          {"width", frame.width},
-          {"height", frame.height},
-          {"render_ms", picture.stats.build_ms + picture.stats.trace_ms},
-          {"encode_ms", picture.encode_ms},
-          {"skipped", skipped},
-          {"rays", picture.stats.counts.rays.total()},
-          {"bound", certificate_json(picture.certificate)}};
+  nlohmann::ordered_json header = {{"frame", frame.frame},
+                                   {"azimuth_degrees", frame.orbit.azimuth_degrees},
+                                   {"elevation_degrees", frame.orbit.elevation_degrees},
+                                   {"distance", frame.orbit.distance},
+                                   {"time", frame.time},
+                                   {"width", frame.width},
+                                   {"height", frame.height},
+                                   {"render_ms", picture.stats.build_ms + picture.stats.trace_ms},
+                                   {"encode_ms", picture.encode_ms},
+                                   {"skipped", skipped}};
+  header.update(result_members(&ResultOutputs::orbit_frame, results_of(picture)));
+  return header;
 }
 
 SharedBytes picture_of(const std::shared_ptr<const OrbitFrame>& frame) {
@@ -96,7 +99,7 @@ void send(const OrbitRequest& orbit, PictureWriter&& writer) {
       const bool written =
           writer.write({.png = picture_of(frame),
                         .header = header,
-                        .fields = {{"Orrery-Error-Bound", bound_text(frame->picture.certificate)}},
+                        .fields = result_headers(&ResultOutputs::orbit_part, results_of(frame->picture)),
                         .last = orbit.viewer->at_end()});
       if (!written) return;
     } catch (const LimitExceeded&) {  // skips the frame, like a slow viewer
@@ -112,7 +115,7 @@ Response orbit(App& app, Request& request) {
   set_stream_headers(response, format);
   const Scene& scene = spec.scene->scene();
   const Plan first = make_plan(scene, spec.path.at(0));
-  set_warnings(response, find_warnings(scene, first));
+  set_results(response, {.warnings = find_warnings(scene, first)});
   if (request.method == "HEAD") return response;
   app.renders().require_request_rays(scene, first);
   OrbitRequest orbit{.place = app.streams().open(request.client),

@@ -2,7 +2,6 @@
 
 #include "core/plan/plan.h"
 #include "core/plan/warnings.h"
-#include "server/api/error_report.h"
 #include "server/app/app.h"
 #include "server/routes/answers.h"
 #include "server/routes/picture_stream.h"
@@ -12,22 +11,15 @@
 namespace orrery {
 namespace {
 
-nlohmann::ordered_json header_of(const Refinement::Step& step, const Plan& plan) {
-  nlohmann::ordered_json header = {
-      {"samples", step.samples}, {"of", plan.samples},          {"width", plan.width},
-      {"height", plan.height},   {"render_ms", step.render_ms}, {"encode_ms", step.encode_ms},
-      {"rays", step.rays}};
-  if (step.picture->stats.error.known()) header["error"] = error_json(step.picture->stats);
-  header["bound"] = certificate_json(step.picture->certificate);
+nlohmann::ordered_json header_of(const Refinement::Step& step, const Plan& plan,
+                                 const ImageResults& results) {
+  nlohmann::ordered_json header = {{"of", plan.samples},
+                                   {"width", plan.width},
+                                   {"height", plan.height},
+                                   {"render_ms", step.render_ms},
+                                   {"encode_ms", step.encode_ms}};
+  header.update(result_members(&ResultOutputs::refinement_frame, results));
   return header;
-}
-
-Fields fields_of(const Refinement::Step& step) {
-  Fields fields;
-  add_with_former_name(fields, "Samples", std::to_string(step.samples));
-  add_with_former_name(fields, "Rays", std::to_string(step.rays));
-  add_accuracy(fields, *step.picture);
-  return fields;
 }
 
 // State of a refinement stream whose first image is rendered.
@@ -41,11 +33,13 @@ struct RefinementRequest {
 // Writes an image. Skips an image that exceeds the quota of response bytes, but throws LimitExceeded for the
 // last one. Returns false if the client has disconnected.
 bool write(PictureWriter& writer, const Refinement& refinement, const Refinement::Step& step) {
-  const auto header = header_of(step, refinement.plan());
+  ImageResults results = results_of(*step.picture);
+  results.samples = step.samples;
+  results.rays = step.rays;
   try {
     return writer.write({.png = {step.picture, step.picture->bytes},
-                         .header = header,
-                         .fields = fields_of(step),
+                         .header = header_of(step, refinement.plan(), results),
+                         .fields = result_headers(&ResultOutputs::refinement_part, results),
                          .last = refinement.at_end()});
   } catch (const LimitExceeded&) {
     if (refinement.at_end()) throw;
@@ -74,14 +68,14 @@ Response refine(App& app, Request& request) {
   const StreamFormat format = negotiate_stream(request);
   Response response;
   set_stream_headers(response, format);
-  set_warnings(response, find_warnings(scene->scene(), plan));
+  set_results(response, {.warnings = find_warnings(scene->scene(), plan)});
   if (request.method == "HEAD") return response;
   RefinementRequest refined{.place = app.streams().open(request.client),
                             .refinement = app.refine({scene, wanted, plan, request.client}),
                             .first = {},
                             .gone = request.gone};
   refined.first = refined.refinement->next(request.gone);  // errors can still set the status
-  set_warnings(response, refined.first->picture->warnings);
+  set_results(response, {.warnings = refined.first->picture->warnings});
   response.stream = [refined, format](Sink& sink) { send(refined, PictureWriter(sink, format)); };
   return response;
 }

@@ -30,7 +30,7 @@ Response render(App& app, Request& request) {
       make_order(std::move(body.scene), std::move(body.request), format_of(type), caller_of(request), trace);
   const Rendered rendered = app.renders().render(order, trace);
   Response response = picture_response(type, rendered, trace);
-  set_budget(response, type, order.scene->scene(), *rendered.picture, request.prefix);
+  set_content_location(response, type, order.scene->scene(), *rendered.picture, request.prefix);
   response.set("Orrery-Scene-Id", order.scene->scene().id);
   response.set("Vary", "Accept");
   response.set("Cache-Control", "no-store");

@@ -57,17 +57,17 @@ void reject_unknown_host(const Request& request, const std::vector<std::string>&
   require_known(request.forwarded_host, origins);  // may come from the client if the proxy does not set it
 }
 
-void allow_origin(const Request& request, const std::vector<std::string>& origins, Response& response) {
+void allow_origin(const Request& request, const std::vector<std::string>& origins,
+                  std::span<const std::string_view> exposed, Response& response) {
   if (origins.empty()) return;
   const std::string vary = find_field(response.headers, "Vary").value_or("");
   response.set("Vary", vary.empty() ? "Origin" : vary + ", Origin");
   if (!is_listed(request, origins)) return;
   response.set("Access-Control-Allow-Origin", *request.header("Origin"));
-  response.set(
-      "Access-Control-Expose-Headers",
-      "Content-Location, ETag, Location, Orrery-Bias, Orrery-Budget, Orrery-Error-Bound, Orrery-Rays, "
-      "Orrery-RMSE, Orrery-Scene-Id, Orrery-Warning, Retry-After, Server-Timing, X-Bias, X-Rays, X-RMSE, "
-      "X-Request-ID");
+  std::string names =
+      "Content-Location, ETag, Location, Orrery-Scene-Id, Retry-After, Server-Timing, X-Request-ID";
+  for (const std::string_view name : exposed) names.append(", ").append(name);
+  response.set("Access-Control-Expose-Headers", std::move(names));
 }
 
 }  // namespace orrery

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "server/http/message.h"
@@ -22,7 +24,9 @@ void reject_cross_origin(const Request& request, const std::vector<std::string>&
 // owner of a domain can point it at this machine and read responses (DNS rebinding). Throws HttpError 403.
 void reject_unknown_host(const Request& request, const std::vector<std::string>& origins);
 
-// Adds the headers that let pages of a listed origin read the response.
-void allow_origin(const Request& request, const std::vector<std::string>& origins, Response& response);
+// Adds the headers that let pages of a listed origin read the response. `exposed`: names of headers that they
+// may read in addition to those of all endpoints.
+void allow_origin(const Request& request, const std::vector<std::string>& origins,
+                  std::span<const std::string_view> exposed, Response& response);
 
 }  // namespace orrery

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "core/base/version.h"
+#include "server/api/results.h"
 #include "server/http/compression.h"
 #include "server/http/process_limits.h"
 #include "server/http/target.h"
@@ -193,7 +194,7 @@ Response Service::finished(const Request& request, Response response) const {
   add_common_headers(request, response);
   if (const auto location = find_field(response.headers, "Location"))
     response.set("Location", request.prefix + *location);
-  allow_origin(request, origins(), response);
+  allow_origin(request, origins(), result_header_names(&ResultOutputs::image), response);
   return response;
 }
 
