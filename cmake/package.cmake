@@ -1,4 +1,4 @@
-# Installation of the man page, shell completions and systemd unit, and the Debian package.
+# Installation of the OpenAPI description, man page, shell completions and systemd unit, and the Debian package.
 
 # The unit names the program, whose prefix is known at installation.
 install(CODE "
@@ -8,6 +8,14 @@ install(CODE "
 install(FILES packaging/orrery.bash RENAME orrery DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
 install(FILES packaging/orrery.zsh RENAME _orrery DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
 install(FILES CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# The program prints the OpenAPI description, so it must run on this machine.
+if(NOT CMAKE_CROSSCOMPILING)
+  set(description ${PROJECT_BINARY_DIR}/openapi.json)
+  add_custom_command(TARGET orrery POST_BUILD BYPRODUCTS ${description}
+    COMMAND $<TARGET_FILE:orrery> openapi > ${description} VERBATIM)
+  install(FILES ${description} DESTINATION ${CMAKE_INSTALL_DATADIR}/orrery)
+endif()
 
 # The man page contains the help, so the program must run on this machine.
 find_program(HELP2MAN help2man)

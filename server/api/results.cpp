@@ -153,7 +153,7 @@ constexpr std::array kResults{
         .member_type = "integer",
         .json = [](In r) { return r.samples ? Json(*r.samples) : Json(); }},
     Row{.in = {.orbit_part = false, .job_step = false, .stats = false},
-        .description = "Rays traced for this image",
+        .description = "Rays traced for this response, pass or frame",
         .header = "Orrery-Rays",
         .former_header = "X-Rays",
         .header_type = "integer",

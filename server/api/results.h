@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/render/renderer.h"
+#include "core/budget/renderer.h"
 #include "server/http/message.h"
 
 // Table of the results of a rendered image, one row per result. The following derive from it: headers of
@@ -66,7 +66,7 @@ struct ImageResult {
   std::string_view member_type = {};   // JSON Schema type
   Json json = nullptr;
 
-  std::string_view label = {};  // of the line of --stats; empty: that of the line above
+  std::string_view label = {};  // label of the line of --stats; empty: none
   Text line = nullptr;          // text of the line; null: none
 };
 

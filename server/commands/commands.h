@@ -26,6 +26,7 @@ Command add_chart(CLI::App& root);
 Command add_audit(CLI::App& root);
 Command add_catalog(CLI::App& root);
 Command add_schema(CLI::App& root);
+Command add_openapi(CLI::App& root);
 Command add_stability(CLI::App& root);
 Command add_help(CLI::App& root);
 

@@ -16,8 +16,9 @@
 namespace orrery {
 namespace {
 
-constexpr auto kCommands = {add_render,  add_orbit,  add_check,     add_explain, add_chart, add_audit,
-                            add_catalog, add_schema, add_stability, add_serve,   add_token, add_help};
+constexpr auto kCommands = {add_render, add_orbit,   add_check,  add_explain, add_chart,
+                            add_audit,  add_catalog, add_schema, add_openapi, add_stability,
+                            add_serve,  add_token,   add_help};
 
 constexpr const char* kProgramExamples = R"(
 Examples:

@@ -14,6 +14,10 @@
 // Helpers of the routes for reading requests and writing responses.
 namespace orrery {
 
+// Placeholder of a path below /v1/scenes/.
+inline constexpr Operation::Parameter kSceneId{"id", "path",
+                                               "Id of a scene: the SHA-256 of its canonical JSON"};
+
 Caller caller_of(const Request& request);
 
 // Returns the RouteBody for JSON of at most `max_request_body_bytes`. It rejects other content types,

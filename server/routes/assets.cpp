@@ -90,13 +90,49 @@ Response remove_asset(App& app, Request& request) {
 }  // namespace
 
 void add_assets_routes(Router& router, App& app) {
+  constexpr Operation::Parameter kAssetId{"sha256", "path", "SHA-256 of the bytes, 64 hexadecimal digits"};
+  const Operation::Content asset{"application/json", "Asset"};
   const RouteBody body{.limit = {app.settings().asset_bytes, "asset_bytes"}, .require = require_asset};
-  router.add("PUT", "/v1/assets/{sha256}", Scope::write, LogLevel::info, body,
-             [&app](Request& request) { return put_asset(app, request); });
-  router.add("GET", "/v1/assets/{sha256}", Scope::read, LogLevel::info,
-             [&app](Request& request) { return get_asset(app, request); });
-  router.add("DELETE", "/v1/assets/{sha256}", Scope::write, LogLevel::info,
-             [&app](Request& request) { return remove_asset(app, request); });
+  router
+      .add("PUT", "/v1/assets/{sha256}", Scope::write, LogLevel::info, body,
+           [&app](Request& request) { return put_asset(app, request); })
+      .describe(
+          {.id = "keep_asset",
+           .summary =
+               "Stores a mesh (OBJ, PLY, STL, glTF) or an image (EXR, HDR, PNG, JPEG) under its SHA-256",
+           .parameters = {kAssetId},
+           .body = {"*/*"},
+           .answers = {{200, "The asset was already stored", {"Location", "ETag"}, {asset}},
+                       {201, "The asset is stored", {"Location", "ETag"}, {asset}}}});
+  router
+      .add("GET", "/v1/assets/{sha256}", Scope::read, LogLevel::info,
+           [&app](Request& request) { return get_asset(app, request); })
+      .describe({.id = "get_asset",
+                 .summary = "Returns the file of an asset",
+                 .parameters = {kAssetId},
+                 .etag = Operation::ETag::always,
+                 .answers = {{200,
+                              "The file",
+                              {},
+                              {{"model/obj"},
+                               {"model/stl"},
+                               {"model/gltf-binary"},
+                               {"model/gltf+json"},
+                               {"image/x-exr"},
+                               {"image/vnd.radiance"},
+                               {"image/png"},
+                               {"image/jpeg"},
+                               {"application/octet-stream"}}}}});
+  router
+      .add("DELETE", "/v1/assets/{sha256}", Scope::write, LogLevel::info,
+           [&app](Request& request) { return remove_asset(app, request); })
+      .describe({.id = "forget_asset",
+                 .summary = "Removes an asset",
+                 .description =
+                     "Allowed for clients that stored the asset and for tokens with the scope admin. The "
+                     "asset is deleted when its last client has removed it",
+                 .parameters = {kAssetId},
+                 .answers = {{204, "The client no longer holds the asset"}}});
 }
 
 }  // namespace orrery

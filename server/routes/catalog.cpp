@@ -10,7 +10,11 @@ namespace orrery {
 
 void add_catalog_routes(Router& router, App&) {
   add_constant(router, "/v1/catalog", Scope::read, "application/json",
-               [] { return json_answer(200, catalog_json()).body; });
+               [] { return json_answer(200, catalog_json()).body; })
+      .describe({.id = "get_catalog",
+                 .summary = "Returns the types that scenes and requests can use, and the sample scenes",
+                 .etag = Operation::ETag::always,
+                 .answers = {{200, "Types and samples", {}, {{"application/json", "Catalog"}}}}});
 }
 
 }  // namespace orrery

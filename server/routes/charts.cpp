@@ -93,10 +93,28 @@ Response get_chart(App& app, Request& request) {
 }  // namespace
 
 void add_charts_routes(Router& router, App& app) {
-  router.add("POST", "/v1/scenes/{id}/charts", Scope::render, LogLevel::info, json_body(app),
-             [&app](Request& request) { return start_chart(app, request); });
-  router.add("GET", "/v1/scenes/{id}/charts/{chart}", Scope::read, LogLevel::info,
-             [&app](Request& request) { return get_chart(app, request); });
+  router
+      .add("POST", "/v1/scenes/{id}/charts", Scope::render, LogLevel::info, json_body(app),
+           [&app](Request& request) { return start_chart(app, request); })
+      .describe({.id = "start_chart",
+                 .summary = "Starts a job that charts the speed against the accuracy of an image",
+                 .parameters = {kSceneId, kIdempotencyKey},
+                 .body = {"application/json", "ChartRequest"},
+                 .body_required = false,
+                 .answers = {kJobAccepted}});
+  router
+      .add("GET", "/v1/scenes/{id}/charts/{chart}", Scope::read, LogLevel::info,
+           [&app](Request& request) { return get_chart(app, request); })
+      .describe(
+          {.id = "get_chart",
+           .summary = "Returns the chart of a job",
+           .parameters = {kSceneId, {"chart", "path", "Id of the job, followed by .json, .svg or .csv"}},
+           .etag = Operation::ETag::always,
+           .answers = {{200,
+                        "The chart. A null in JSON is an empty field in CSV",
+                        {},
+                        {{"application/json", "Chart"}, {"image/svg+xml"}, {"text/csv"}}}},
+           .errors = {409}});
 }
 
 }  // namespace orrery

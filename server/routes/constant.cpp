@@ -42,11 +42,11 @@ class Constant {
 
 }  // namespace
 
-void add_constant(Router& router, std::string_view pattern, Scope scope, std::string_view type,
-                  std::function<SharedBytes()> make) {
+Route& add_constant(Router& router, std::string_view pattern, Scope scope, std::string_view type,
+                    std::function<SharedBytes()> make) {
   const auto constant = std::make_shared<Constant>(type, std::move(make));
-  router.add("GET", pattern, scope, LogLevel::info,
-             [constant](Request& request) { return constant->answer(request); });
+  return router.add("GET", pattern, scope, LogLevel::info,
+                    [constant](Request& request) { return constant->answer(request); });
 }
 
 }  // namespace orrery

@@ -38,8 +38,19 @@ Response explain(App& app, Request& request) {
 }  // namespace
 
 void add_explain_routes(Router& router, App& app) {
-  router.add("GET", "/v1/scenes/{id}/explain", Scope::read, LogLevel::info,
-             [&app](Request& request) { return explain(app, request); });
+  router
+      .add("GET", "/v1/scenes/{id}/explain", Scope::read, LogLevel::info,
+           [&app](Request& request) { return explain(app, request); })
+      .describe(
+          {.id = "explain",
+           .summary = "Returns the plan of an image: each decision with its reason and error bound",
+           .parameters = {kSceneId,
+                          {kOwnParameters[0], "query",
+                           "Whether to trace some pixels and predict the cost and error of the image. The "
+                           "request then waits in the queue like a render",
+                           R"({"type": "boolean", "default": false})"}},
+           .renders = true,
+           .answers = {{200, "The plan", {}, {{"application/json", "Explanation"}}}}});
 }
 
 }  // namespace orrery

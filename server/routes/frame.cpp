@@ -40,8 +40,20 @@ Response frame(App& app, Request& request) {
 }  // namespace
 
 void add_frame_routes(Router& router, App& app) {
-  router.add("GET", "/v1/scenes/{id}/frame.png", Scope::read, LogLevel::info,
-             [&app](Request& request) { return frame(app, request); });
+  router
+      .add("GET", "/v1/scenes/{id}/frame.png", Scope::read, LogLevel::info,
+           [&app](Request& request) { return frame(app, request); })
+      .describe(
+          {.id = "get_frame",
+           .summary = "Renders one image, which depends only on its URL unless the URL sets a time budget",
+           .parameters = {kSceneId},
+           .renders = true,
+           .etag = Operation::ETag::if_it_lasts,
+           .answers = {{.status = 200,
+                        .description = "The image",
+                        .headers = {"Cache-Control", "Content-Location"},
+                        .content = {{"image/png"}},
+                        .has_results = true}}});
 }
 
 }  // namespace orrery

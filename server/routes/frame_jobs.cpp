@@ -126,10 +126,24 @@ Response start_frames(App& app, Request& request) {
 }  // namespace
 
 void add_frame_jobs_routes(Router& router, App& app) {
-  router.add("POST", "/v1/jobs", Scope::render, LogLevel::info, json_body(app),
-             [&app](Request& request) { return start_frames(app, request); });
-  router.add("GET", "/v1/jobs/{id}/frames/{frame}", Scope::read, LogLevel::info,
-             [&app](Request& request) { return job_result(app, request, request.path_value("id")); });
+  router
+      .add("POST", "/v1/jobs", Scope::render, LogLevel::info, json_body(app),
+           [&app](Request& request) { return start_frames(app, request); })
+      .describe({.id = "start_job",
+                 .summary = "Starts a long render: an image, or the frames of an orbit",
+                 .parameters = {kIdempotencyKey},
+                 .body = {"application/json", "JobRequest"},
+                 .answers = {kJobAccepted},
+                 .errors = {404}});
+  router
+      .add("GET", "/v1/jobs/{id}/frames/{frame}", Scope::read, LogLevel::info,
+           [&app](Request& request) { return job_result(app, request, request.path_value("id")); })
+      .describe({.id = "get_job_frame",
+                 .summary = "Returns an image of a job",
+                 .parameters = {kJobId, {"frame", "path", "0.png, 1.png, ..."}},
+                 .etag = Operation::ETag::always,
+                 .answers = {{200, "The image", {}, {{"image/png"}}}},
+                 .errors = {409}});
 }
 
 }  // namespace orrery

@@ -14,9 +14,19 @@ Response status(std::string_view word) {
 }  // namespace
 
 void add_health_routes(Router& router, App& app) {
-  router.add("GET", "/healthz", Scope::none, LogLevel::debug, [](Request&) { return status("ok"); });
-  router.add("GET", "/readyz", Scope::none, LogLevel::debug,
-             [&app](Request&) { return status(app.readiness()); });
+  const Operation::Content health{"application/json", "Health"};
+  router.add("GET", "/healthz", Scope::none, LogLevel::debug, [](Request&) { return status("ok"); })
+      .describe({.id = "healthz",
+                 .summary = "Reports whether the process responds",
+                 .answers = {{200, "The process responds", {}, {health}}}});
+  router
+      .add("GET", "/readyz", Scope::none, LogLevel::debug,
+           [&app](Request&) { return status(app.readiness()); })
+      .describe(
+          {.id = "readyz",
+           .summary = "Reports whether load balancers should send new work",
+           .answers = {{200, "Send new work", {}, {health}},
+                       {503, "Send no new work: the service is full, slow or draining", {}, {health}}}});
 }
 
 }  // namespace orrery

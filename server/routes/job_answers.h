@@ -5,6 +5,16 @@
 // Helpers of the routes that start jobs and report their progress.
 namespace orrery {
 
+// Placeholder of a path below /v1/jobs/.
+inline constexpr Operation::Parameter kJobId{"id", "path", "Id of a job"};
+// Header of a request that starts a job.
+inline constexpr Operation::Parameter kIdempotencyKey{
+    "Idempotency-Key", "header", "Requests of a client with the same key start only one job",
+    R"({"type": "string", "maxLength": 255})"};
+// Response to a request that starts a job.
+inline const Operation::Answer kJobAccepted{
+    202, "The job is accepted", {"Location"}, {{"application/json", "Job"}}};
+
 std::string job_path(const std::string& job_id);
 // Returns the links of JobWork, each with `prefix` prepended.
 nlohmann::ordered_json with_prefix(nlohmann::ordered_json links, const std::string& prefix);

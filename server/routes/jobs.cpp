@@ -101,12 +101,33 @@ Response remove_job(App& app, Request& request) {
 }  // namespace
 
 void add_jobs_routes(Router& router, App& app) {
-  router.add("GET", "/v1/jobs/{id}", Scope::read, LogLevel::info,
-             [&app](Request& request) { return get_job(app, request); });
-  router.add("DELETE", "/v1/jobs/{id}", Scope::render, LogLevel::info,
-             [&app](Request& request) { return remove_job(app, request); });
-  router.add("GET", "/v1/jobs/{id}/events", Scope::read, LogLevel::info,
-             [&app](Request& request) { return get_events(app, request); });
+  router
+      .add("GET", "/v1/jobs/{id}", Scope::read, LogLevel::info,
+           [&app](Request& request) { return get_job(app, request); })
+      .describe({.id = "get_job",
+                 .summary = "Returns the progress of a job",
+                 .parameters = {kJobId},
+                 .answers = {{200, "State of the job", {}, {{"application/json", "Job"}}}}});
+  router
+      .add("DELETE", "/v1/jobs/{id}", Scope::render, LogLevel::info,
+           [&app](Request& request) { return remove_job(app, request); })
+      .describe({.id = "cancel_job",
+                 .summary = "Cancels and removes a job",
+                 .parameters = {kJobId},
+                 .answers = {{204, "The job is removed"}}});
+  router
+      .add("GET", "/v1/jobs/{id}/events", Scope::read, LogLevel::info,
+           [&app](Request& request) { return get_events(app, request); })
+      .describe(
+          {.id = "watch_job",
+           .summary =
+               "Streams server-sent events: progress, frame, and finally done, failed or cancelled. The "
+               "data of an event is the job. A frame event adds the number and URL of the frame, and "
+               "the results of components.schemas.JobFrameResults",
+           .parameters = {kJobId, {"Last-Event-ID", "header", "", R"({"type": "integer", "minimum": 0})"}},
+           .answers = {{200, "Events until the job ends", {}, {{"text/event-stream"}}},
+                       {204, "Last-Event-ID was the last event"}},
+           .errors = {400, 406, 429, 503}});
 }
 
 }  // namespace orrery

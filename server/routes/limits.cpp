@@ -52,7 +52,11 @@ nlohmann::ordered_json limits_json(const Settings& settings, const nlohmann::ord
 
 void add_limits_routes(Router& router, App& app) {
   add_constant(router, "/v1/limits", Scope::read, "application/json",
-               [&app] { return json_answer(200, limits_json(app.settings(), option_limits())).body; });
+               [&app] { return json_answer(200, limits_json(app.settings(), option_limits())).body; })
+      .describe({.id = "get_limits",
+                 .summary = "Returns the limits of requests, under the names that errors use",
+                 .etag = Operation::ETag::always,
+                 .answers = {{200, "Limits", {}, {{"application/json", "Limits"}}}}});
 }
 
 }  // namespace orrery

@@ -1,102 +1,143 @@
-#include <algorithm>
-#include <nlohmann/json.hpp>
+#include "server/routes/openapi.h"
 
-#include "server/api/option_json.h"
-#include "server/api/render_options.h"
-#include "server/base/embedded.h"
-#include "server/config/settings.h"
-#include "server/routes/answers.h"
+#include <cctype>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "server/api/results.h"
+#include "server/app/app.h"
 #include "server/routes/constant.h"
 
-// GET /openapi.json: the OpenAPI description of the service. The file openapi.json contains everything except
-// the parts that follow from render options and settings:
-//   "render options" in a list of parameters  is replaced by the query parameters of all render options;
-//   components.schemas                        lacks the sections of a request body, such as camera;
-//   components.schemas.Explanation            lacks the options of the section render;
-//   components.schemas.Limits                 lacks the limits that are settings.
+// GET /openapi.json: the OpenAPI description of the service, from the operations of the routes.
 namespace orrery {
 namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::string_view kPlaceholder = "render options";
-
-ordered_json file_part() {
-  const auto files = embedded_files();
-  const auto file = std::find_if(files.begin(), files.end(),
-                                 [](const auto& f) { return f.path == "server/routes/openapi.json"; });
-  return ordered_json::parse(file->bytes);
+ordered_json schema_of(Operation::Schema schema) {
+  if (schema.starts_with('{')) return ordered_json::parse(schema);
+  if (schema.starts_with('/')) return {{"$ref", schema}};
+  return component("schemas", schema);
 }
 
-// Returns the query parameter `name` of an option. The values of a list are separated by commas.
-ordered_json parameter_of(std::string_view name, const RenderOption& option, ordered_json schema) {
-  std::string description = schema["description"];
-  schema.erase("description");
-  if (name != option.key) description = "Short name of " + std::string(option.key) + ".";
-  ordered_json parameter = {{"name", name}, {"in", "query"}, {"description", std::move(description)}};
-  const auto form = option.form();
-  if (form == RenderOption::Form::numbers || form == RenderOption::Form::strings)
-    parameter.update({{"style", "form"}, {"explode", false}});
-  parameter["schema"] = std::move(schema);
-  return parameter;
-}
-
-void add_schemas(ordered_json& schemas, const ordered_json& options) {
-  for (const Section section : kSections) {
-    ordered_json& schema = schemas[std::string(name_of(section))];
-    schema = {{"type", "object"}, {"properties", ordered_json::object()}, {"additionalProperties", false}};
-    for (const RenderOption& option : render_options())
-      if (option.section == section) schema["properties"][std::string(option.key)] = options.at(option.key);
+ordered_json content_of(std::span<const Operation::Content> contents) {
+  ordered_json json = ordered_json::object();
+  for (const auto& [type, schema] : contents) {
+    ordered_json& content = json[std::string(type)] = ordered_json::object();
+    if (!schema.empty()) content["schema"] = schema_of(schema);
   }
-  schemas["Explanation"]["properties"].update(schemas["render"]["properties"]);
+  return json;
 }
 
-void add_limits(ordered_json& schema) {
-  for (const Setting& limit : limits()) {
-    schema["required"].push_back(limit.name);
-    schema["properties"][std::string(limit.name)] = {
-        {"type", "integer"}, {"minimum", limit.min}, {"description", std::string(limit.help) + "."}};
-  }
+std::string path_of(const Route& route) {
+  const std::string_view documented = route.operation->documented_path;
+  return documented.empty() ? route.pattern : std::string(documented);
 }
 
-// Replaces the placeholder in all lists of parameters with references to components. Returns these components
-// by name.
-ordered_json expand_parameters(ordered_json& paths, const ordered_json& options) {
-  ordered_json components = ordered_json::object(), references = ordered_json::array();
-  for (const std::string_view name : render_option_names()) {
-    const RenderOption& option = *find_render_option(name);
-    const std::string component = "query-" + std::string(name);
-    components[component] = parameter_of(name, option, options.at(option.key));
-    references.push_back({{"$ref", "#/components/parameters/" + component}});
+ordered_json parameters_of(const Route& route) {
+  const Operation& operation = *route.operation;
+  ordered_json list = ordered_json::array();
+  for (const Operation::Parameter& parameter : operation.parameters) {
+    ordered_json& json = list.emplace_back(ordered_json{{"name", parameter.name}, {"in", parameter.in}});
+    if (parameter.in == "path") json["required"] = true;
+    if (!parameter.description.empty()) json["description"] = parameter.description;
+    json["schema"] = schema_of(parameter.schema);
   }
-  for (ordered_json& path : paths) {
-    if (!path.contains("get")) continue;
-    ordered_json expanded = ordered_json::array();
-    for (const ordered_json& parameter : path["get"].value("parameters", ordered_json::array())) {
-      if (parameter == kPlaceholder)
-        expanded.insert(expanded.end(), references.begin(), references.end());
-      else
-        expanded.push_back(parameter);
-    }
-    if (!expanded.empty()) path["get"]["parameters"] = std::move(expanded);
-  }
-  return components;
+  const auto add_shared = [&](std::string_view name) { list.push_back(component("parameters", name)); };
+  if (operation.renders)
+    for (ordered_json& option : option_parameters()) list.push_back(std::move(option));
+  if (operation.etag != Operation::ETag::none) add_shared("If-None-Match");
+  if (route.method == "GET" && route.scope == Scope::read)
+    for (const char* name : {"expires", "signature"}) add_shared(name);
+  return list;
 }
 
-std::string description() {
-  ordered_json json = file_part();
-  const ordered_json options = option_schemas();
-  add_schemas(json["components"]["schemas"], options);
-  add_limits(json["components"]["schemas"]["Limits"]);
-  json["components"]["parameters"].update(expand_parameters(json["paths"], options));
-  return json.dump(2) + "\n";
+// Returns the statuses of the errors that the route can return, and 304. See Operation.
+std::set<int> common_statuses(const Route& route) {
+  const Operation& operation = *route.operation;
+  std::set<int> statuses(operation.errors.begin(), operation.errors.end());
+  if (route.scope != Scope::none) statuses.insert({401, 403});
+  if (path_of(route).find('{') != std::string::npos && route.method != "PUT") statuses.insert(404);
+  if (route.body) statuses.insert({400, 408, 411, 413, 415, 422, 429, 503, 504});
+  if (operation.renders) statuses.insert({400, 422, 429, 503, 504});
+  if (operation.etag != Operation::ETag::none) statuses.insert(304);
+  statuses.insert(0);
+  return statuses;
+}
+
+ordered_json response_of(const Operation& operation, const Operation::Answer& answer) {
+  ordered_json headers = {{"X-Request-ID", component("headers", "X-Request-ID")}};
+  const auto add = [&](std::string_view name) { headers[std::string(name)] = component("headers", name); };
+  for (const std::string_view name : answer.headers) add(name);
+  if (answer.status == 200 && operation.etag == Operation::ETag::always) add("ETag");
+  if (answer.status == 200 && operation.etag == Operation::ETag::if_it_lasts)
+    headers["ETag"] = component("headers", "ETag-if-it-lasts");
+  for (const ImageResult& row : image_results())
+    if (answer.has_results && row.in.image && !row.header.empty()) add(row.header);
+  ordered_json json = {{"description", answer.description}, {"headers", std::move(headers)}};
+  if (!answer.content.empty()) json["content"] = content_of(answer.content);
+  return json;
+}
+
+ordered_json responses_of(const Route& route) {
+  ordered_json responses = ordered_json::object();
+  for (const Operation::Answer& answer : route.operation->answers)
+    responses[std::to_string(answer.status)] = response_of(*route.operation, answer);
+  const std::set<int> statuses = common_statuses(route);
+  for (const CommonResponse& response : common_responses())
+    if (statuses.contains(response.status))
+      responses[response.status == 0 ? "default" : std::to_string(response.status)] =
+          component("responses", response.name);
+  return responses;
+}
+
+ordered_json operation_of(const Route& route) {
+  const Operation& operation = *route.operation;
+  ordered_json json = {{"summary", operation.summary}};
+  if (!operation.description.empty()) json["description"] = operation.description;
+  json["operationId"] = operation.id;
+  if (ordered_json parameters = parameters_of(route); !parameters.empty())
+    json["parameters"] = std::move(parameters);
+  if (!operation.body.type.empty()) {
+    if (operation.body_required) json["requestBody"]["required"] = true;
+    json["requestBody"]["content"] = content_of({&operation.body, 1});
+  }
+  json["responses"] = responses_of(route);
+  if (route.scope == Scope::none) json["security"] = ordered_json::array();
+  return json;
+}
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
 }
 
 }  // namespace
 
+std::string openapi_text(const Router& router) {
+  ordered_json json = {
+      {"openapi", "3.1.0"},
+      {"info",
+       {{"title", "orrery"},
+        {"version", "1"},
+        {"description", "Render service for 3D scenes: POST a scene, get an image or a stream of frames."},
+        {"license", {{"name", "Apache-2.0"}, {"identifier", "Apache-2.0"}}}}},
+      {"servers", ordered_json::array({{{"url", "."}}})},
+      {"security", ordered_json::array({{{"bearer", ordered_json::array()}}, ordered_json::object()})}};
+  for (const Route& route : router.routes())
+    if (route.operation) json["paths"][path_of(route)][lower(route.method)] = operation_of(route);
+  json["components"] = openapi_components();
+  return json.dump(2) + "\n";
+}
+
 void add_openapi_routes(Router& router, App&) {
   add_constant(router, "/openapi.json", Scope::none, "application/json",
-               [] { return SharedBytes(description()); });
+               [&router] { return SharedBytes(openapi_text(router)); })
+      .describe(
+          {.id = "get_description",
+           .summary = "Returns this description",
+           .etag = Operation::ETag::always,
+           .answers = {{200, "This description", {}, {{"application/json", R"({"type": "object"})"}}}}});
 }
 
 }  // namespace orrery

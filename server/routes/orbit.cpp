@@ -132,8 +132,28 @@ Response orbit(App& app, Request& request) {
 }  // namespace
 
 void add_orbit_routes(Router& router, App& app) {
-  router.add("GET", "/v1/scenes/{id}/orbit", Scope::read, LogLevel::info,
-             [&app](Request& request) { return orbit(app, request); });
+  router
+      .add("GET", "/v1/scenes/{id}/orbit", Scope::read, LogLevel::info,
+           [&app](Request& request) { return orbit(app, request); })
+      .describe(
+          {.id = "watch_orbit",
+           .summary = "Streams the frames of a camera orbit as they are rendered; slow viewers skip frames",
+           .parameters = {kSceneId,
+                          {"frames", "query", "Number of frames",
+                           R"({"type": "integer", "minimum": 1, "default": 120})"},
+                          {"fps", "query", "Maximum frames per second; 0: as fast as the client reads",
+                           R"({"type": "number", "minimum": 0, "maximum": 240, "default": 30})"},
+                          {"step", "query", "Degrees per frame; default: one full turn over all frames",
+                           R"({"type": "number", "minimum": -360, "maximum": 360})"},
+                          {"time_step", "query",
+                           "Seconds of scene motion per frame; default: the whole motion over all frames",
+                           R"({"type": "number", "minimum": -3600, "maximum": 3600})"}},
+           .renders = true,
+           .answers = {stream_answer(
+               "A stream of PNG images, as multipart parts or as frames. A frame is a 4-byte big-endian "
+               "length, a JSON header of that length, and a PNG of header.bytes bytes. ",
+               "OrbitResults", &ResultOutputs::orbit_part)},
+           .errors = {406}});
 }
 
 }  // namespace orrery

@@ -18,6 +18,21 @@ StreamFormat negotiate_stream(const Request& request) {
                                                                            : StreamFormat::frames;
 }
 
+Operation::Answer stream_answer(const std::string& description, const std::string& schema,
+                                ResultOutput parts) {
+  std::string names;
+  for (const ImageResult& row : image_results())
+    if (row.in.*parts && !row.header.empty()) names += (names.empty() ? "" : ", ") + std::string(row.header);
+  return {
+      .status = 200,
+      .description =
+          description +
+          "The header of a frame has the results of its image as members, described in components.schemas." +
+          schema + ". Headers of a part with results: " + names,
+      .headers = {"Orrery-Warning"},
+      .content = {{kMultipart}, {kFrames}}};
+}
+
 void set_stream_headers(Response& response, StreamFormat format) {
   response.set("Content-Type", format == StreamFormat::multipart
                                    ? std::string(kMultipart) + "; boundary=" + std::string(kBoundary)

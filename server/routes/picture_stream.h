@@ -5,7 +5,9 @@
 #include <string>
 #include <string_view>
 
+#include "server/api/results.h"
 #include "server/http/message.h"
+#include "server/routes/operation.h"
 
 // Streams of PNG images in one of two formats. Browsers can show multipart/x-mixed-replace.
 // application/x-orrery-frames is a sequence of [header length: 4 bytes, big-endian][header: JSON][PNG].
@@ -17,6 +19,10 @@ enum class StreamFormat { multipart, frames };
 StreamFormat negotiate_stream(const Request& request);
 // Sets Content-Type and the headers that keep proxies from caching and buffering.
 void set_stream_headers(Response& response, StreamFormat format);
+// Returns the description of a response with a stream. `schema`: component with the results in the header of
+// a frame. `parts`: output with the results in the headers of a part.
+Operation::Answer stream_answer(const std::string& description, const std::string& schema,
+                                ResultOutput parts);
 
 struct StreamedPicture {
   SharedBytes png;

@@ -83,8 +83,21 @@ Response refine(App& app, Request& request) {
 }  // namespace
 
 void add_refinement_routes(Router& router, App& app) {
-  router.add("GET", "/v1/scenes/{id}/refinement", Scope::read, LogLevel::info,
-             [&app](Request& request) { return refine(app, request); });
+  router
+      .add("GET", "/v1/scenes/{id}/refinement", Scope::read, LogLevel::info,
+           [&app](Request& request) { return refine(app, request); })
+      .describe(
+          {.id = "refine_frame",
+           .summary = "Streams one image in passes, each with about twice the samples of the previous pass. "
+                      "Each pass equals frame.png with the same number of samples",
+           .parameters = {kSceneId},
+           .renders = true,
+           .answers = {stream_answer(
+               "A stream of PNG images in the format of an orbit. The header of a frame contains of (samples "
+               "of the last pass), width, height, and the render_ms and encode_ms of the pass. If the last "
+               "image is cached, the stream contains only that image. ",
+               "RefinementResults", &ResultOutputs::refinement_part)},
+           .errors = {406}});
 }
 
 }  // namespace orrery

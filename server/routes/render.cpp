@@ -14,6 +14,8 @@ struct Kind {
 constexpr std::array kKinds{Kind{"image/png", FileFormat::png}, Kind{"image/jpeg", FileFormat::jpeg},
                             Kind{"image/x-exr", FileFormat::exr}};
 
+constexpr std::array kTypes{kKinds[0].type, kKinds[1].type, kKinds[2].type};
+
 FileFormat format_of(std::string_view type) {
   for (const Kind& kind : kKinds)
     if (kind.type == type) return kind.format;
@@ -22,7 +24,6 @@ FileFormat format_of(std::string_view type) {
 
 Response render(App& app, Request& request) {
   app.require_open();
-  constexpr std::array kTypes{kKinds[0].type, kKinds[1].type, kKinds[2].type};
   const std::string_view type = negotiate(request, kTypes);
   RequestTrace trace;
   RenderBody body = read_render_body(app, request, trace);
@@ -40,8 +41,18 @@ Response render(App& app, Request& request) {
 }  // namespace
 
 void add_render_routes(Router& router, App& app) {
-  router.add("POST", "/v1/render", Scope::render, LogLevel::info, json_body(app),
-             [&app](Request& request) { return render(app, request); });
+  router
+      .add("POST", "/v1/render", Scope::render, LogLevel::info, json_body(app),
+           [&app](Request& request) { return render(app, request); })
+      .describe({.id = "render",
+                 .summary = "Renders a scene",
+                 .body = {"application/json", "RenderRequest"},
+                 .answers = {{.status = 200,
+                              .description = "The image",
+                              .headers = {"Server-Timing", "Orrery-Scene-Id", "Content-Location"},
+                              .content = {{kTypes[0]}, {kTypes[1]}, {kTypes[2]}},
+                              .has_results = true}},
+                 .errors = {404, 406}});
 }
 
 }  // namespace orrery

@@ -12,21 +12,22 @@ bool is_place(std::string_view segment) { return segment.starts_with('{') && seg
 
 }  // namespace
 
-void Router::add(std::string_view method, std::string_view pattern, Scope scope, LogLevel log,
-                 Route::Handler handler) {
-  routes_.push_back({.method = std::string(method),
-                     .pattern = std::string(pattern),
-                     .segments = parse_target(pattern).segments,
-                     .scope = scope,
-                     .log = log,
-                     .body = {},
-                     .handler = std::move(handler)});
+Route& Router::add(std::string_view method, std::string_view pattern, Scope scope, LogLevel log,
+                   Route::Handler handler) {
+  return routes_.emplace_back(Route{.method = std::string(method),
+                                    .pattern = std::string(pattern),
+                                    .segments = parse_target(pattern).segments,
+                                    .scope = scope,
+                                    .log = log,
+                                    .body = {},
+                                    .handler = std::move(handler)});
 }
 
-void Router::add(std::string_view method, std::string_view pattern, Scope scope, LogLevel log,
-                 const RouteBody& body, Route::Handler handler) {
-  add(method, pattern, scope, log, std::move(handler));
-  routes_.back().body = body;
+Route& Router::add(std::string_view method, std::string_view pattern, Scope scope, LogLevel log,
+                   const RouteBody& body, Route::Handler handler) {
+  Route& route = add(method, pattern, scope, log, std::move(handler));
+  route.body = body;
+  return route;
 }
 
 std::string Router::named_below(const Request& request) const {

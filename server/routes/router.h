@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "server/http/message.h"
+#include "server/routes/operation.h"
 #include "server/security/access.h"
 #include "server/telemetry/log.h"
 
@@ -30,17 +31,20 @@ struct Route {
   LogLevel log;                       // log level of successful requests
   std::optional<RouteBody> body;      // nullopt: no body is read
   Handler handler;
+  std::optional<Operation> operation = {};  // nullopt: not in the OpenAPI document
+
+  void describe(Operation described) { operation = std::move(described); }
 };
 
 // Finds the route for a method and a path. Thread-safe once all routes are added.
 class Router {
  public:
   // Adds a route. In `pattern`, {name} matches one non-empty segment: "/v1/scenes/{id}/frame.png". A GET
-  // route also answers HEAD. Routes are tried in order of addition.
-  void add(std::string_view method, std::string_view pattern, Scope scope, LogLevel log,
-           Route::Handler handler);
-  void add(std::string_view method, std::string_view pattern, Scope scope, LogLevel log,
-           const RouteBody& body, Route::Handler handler);
+  // route also answers HEAD. Routes are tried in order of addition. The returned route can be described.
+  Route& add(std::string_view method, std::string_view pattern, Scope scope, LogLevel log,
+             Route::Handler handler);
+  Route& add(std::string_view method, std::string_view pattern, Scope scope, LogLevel log,
+             const RouteBody& body, Route::Handler handler);
 
   // Returns the route of the request. Sets request.route and request.path_values, also if only the path
   // matches. Throws HttpError 404 or 405.

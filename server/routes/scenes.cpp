@@ -72,12 +72,38 @@ Response remove_scene(App& app, Request& request) {
 }  // namespace
 
 void add_scenes_routes(Router& router, App& app) {
-  router.add("POST", "/v1/scenes", Scope::write, LogLevel::info, json_body(app),
-             [&app](Request& request) { return add_scene(app, request); });
-  router.add("GET", "/v1/scenes/{id}", Scope::read, LogLevel::info,
-             [&app](Request& request) { return get_scene(app, request); });
-  router.add("DELETE", "/v1/scenes/{id}", Scope::write, LogLevel::info,
-             [&app](Request& request) { return remove_scene(app, request); });
+  const Operation::Content summary{"application/json", "SceneSummary"};
+  router
+      .add("POST", "/v1/scenes", Scope::write, LogLevel::info, json_body(app),
+           [&app](Request& request) { return add_scene(app, request); })
+      .describe({.id = "keep_scene",
+                 .summary =
+                     "Stores a scene in memory under the SHA-256 of its canonical JSON, until the service "
+                     "stops or a full store evicts it",
+                 .body = {"application/json", "/schemas/scene.json"},
+                 .answers = {{200, "The scene was already stored", {"Location", "ETag"}, {summary}},
+                             {201,
+                              "The scene is stored; it may have been rendered before",
+                              {"Location", "ETag"},
+                              {summary}}}});
+  router
+      .add("GET", "/v1/scenes/{id}", Scope::read, LogLevel::info,
+           [&app](Request& request) { return get_scene(app, request); })
+      .describe({.id = "get_scene",
+                 .summary = "Returns the scene as canonical JSON",
+                 .parameters = {kSceneId},
+                 .etag = Operation::ETag::always,
+                 .answers = {{200, "The scene", {}, {{"application/json", "/schemas/scene.json"}}}}});
+  router
+      .add("DELETE", "/v1/scenes/{id}", Scope::write, LogLevel::info,
+           [&app](Request& request) { return remove_scene(app, request); })
+      .describe({.id = "forget_scene",
+                 .summary = "Removes a scene",
+                 .description =
+                     "Allowed for clients that posted the scene and for tokens with the scope admin. "
+                     "The scene is deleted when its last client has removed it",
+                 .parameters = {kSceneId},
+                 .answers = {{204, "The client no longer holds the scene"}}});
 }
 
 }  // namespace orrery

@@ -62,8 +62,14 @@ Response share(App& app, const Router& router, Request& request) {
 }  // namespace
 
 void add_shares_routes(Router& router, App& app) {
-  router.add("POST", "/v1/shares", Scope::write | Scope::read, LogLevel::info, json_body(app),
-             [&app, &router](Request& request) { return share(app, router, request); });
+  router
+      .add("POST", "/v1/shares", Scope::write | Scope::read, LogLevel::info, json_body(app),
+           [&app, &router](Request& request) { return share(app, router, request); })
+      .describe({.id = "share",
+                 .summary = "Signs a link, which works without a token until it expires",
+                 .body = {"application/json", "ShareRequest"},
+                 .answers = {{201, "The link", {}, {{"application/json", "Share"}}}},
+                 .errors = {404}});
 }
 
 }  // namespace orrery

@@ -11,7 +11,14 @@ namespace orrery {
 
 void add_stability_routes(Router& router, App&) {
   add_constant(router, "/v1/stability", Scope::read, "application/json",
-               [] { return json_answer(200, stability_json(measure_stability())).body; });
+               [] { return json_answer(200, stability_json(measure_stability())).body; })
+      .describe({.id = "get_stability",
+                 .summary = "Returns the errors of known numerical methods and of the methods of this build",
+                 .etag = Operation::ETag::always,
+                 .answers = {{200,
+                              "Measured rows; the first request waits for the measurement",
+                              {},
+                              {{"application/json", "Stability"}}}}});
 }
 
 }  // namespace orrery

@@ -274,6 +274,7 @@ TEST_F(CommandLine, SuggestsBrowserPlayableVideoInOrbitHelp) {
 
 TEST_F(CommandLine, PrintsSchemaCatalogAndExplanationAsJson) {
   EXPECT_TRUE(nlohmann::json::accept(run("schema").out));
+  EXPECT_EQ(nlohmann::json::parse(run("openapi").out).at("openapi"), "3.1.0");
   EXPECT_TRUE(nlohmann::json::parse(run("catalog").out).contains("shapes"));
   const std::string scene = write("s.json", kScene);
   EXPECT_FALSE(nlohmann::json::parse(run("explain --json " + scene).out).at("decisions").empty());

@@ -13,8 +13,9 @@
 namespace orrery {
 namespace {
 
-constexpr const char* kCommandNames[] = {"render",  "orbit",  "check",     "explain", "chart", "audit",
-                                         "catalog", "schema", "stability", "serve",   "token", "help"};
+constexpr const char* kCommandNames[] = {"render", "orbit",   "check",  "explain", "chart",
+                                         "audit",  "catalog", "schema", "openapi", "stability",
+                                         "serve",  "token",   "help"};
 constexpr const char* kImageCommands[] = {"render", "orbit", "explain", "chart", "audit"};
 
 struct HelpRun {

@@ -120,6 +120,16 @@ TEST_F(Info, DescribesEveryRenderOption) {
   }
 }
 
+TEST_F(Info, DescribesHeadersOfImages) {
+  const auto description = get_json("/openapi.json");
+  const auto& headers =
+      description.at("paths").at("/v1/render").at("post").at("responses").at("200").at("headers");
+  const auto rendered = client_.Post("/v1/render", small_scene().dump(), "application/json");
+  EXPECT_TRUE(rendered->has_header("Orrery-Error-Bound"));
+  for (const auto& [name, value] : rendered->headers)
+    EXPECT_TRUE(headers.contains(name) || !name.starts_with("Orrery-")) << name;
+}
+
 TEST_F(Info, PublishesLimitsAndDefaultsOfRenderOptions) {
   const auto limits = get_json("/v1/limits").at("options"), defaults = get_json("/v1/catalog").at("defaults");
   for (const RenderOption& option : render_options()) {

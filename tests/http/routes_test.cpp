@@ -2,15 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "core/base/hash.h"
 #include "server/base/embedded.h"
 #include "server/http/target.h"
+#include "server/routes/openapi.h"
 #include "tests/http/daemon.h"
 
-// Tests the scope and log level of each route.
+// Tests the scope, log level and description of each route.
 namespace orrery {
 namespace {
 
@@ -67,39 +69,76 @@ TEST_F(Routes, RequiresExpectedScopes) {
     EXPECT_EQ(find("GET", path).scope, Scope::none) << path;
 }
 
-// Returns a path of the API description with values for its placeholders.
-std::string with_placeholders_filled(std::string path) {
-  // Each sample scene has its own route.
-  if (path.starts_with("/scenes/thumbnails/")) return "/scenes/thumbnails/paper.webp";
-  if (path.starts_with("/scenes/")) return "/scenes/paper.json";
-  for (std::size_t at; (at = path.find('{')) != std::string::npos;)
-    path.replace(at, path.find('}') - at + 1, "a");
-  return path;
+// Returns the names of the parameters in the path that an operation describes.
+std::multiset<std::string> path_parameters(const nlohmann::json& operation) {
+  std::multiset<std::string> names;
+  for (const auto& parameter : operation.value("parameters", nlohmann::json::array()))
+    if (parameter.value("in", "") == "path") names.insert(parameter.at("name"));
+  return names;
+}
+std::multiset<std::string> placeholders(const std::string& path) {
+  std::multiset<std::string> names;
+  for (std::size_t at = 0; (at = path.find('{', at)) != std::string::npos; ++at)
+    names.insert(path.substr(at + 1, path.find('}', at) - at - 1));
+  return names;
 }
 
-TEST_F(Routes, MatchesOpenApiDescription) {
-  const auto files = embedded_files();
-  const auto file = std::find_if(files.begin(), files.end(),
-                                 [](const auto& f) { return f.path == "server/routes/openapi.json"; });
-  ASSERT_NE(file, files.end());
-  int found = 0;
-  const auto description = nlohmann::json::parse(file->bytes);
-  for (const auto& [path, item] : description.at("paths").items()) {
-    std::set<std::string> described{"OPTIONS"};
-    for (const char* method : {"get", "post", "put", "delete"}) {
-      if (!item.contains(method)) continue;
-      std::string upper = method;
-      for (char& c : upper) c = static_cast<char>(c - 'a' + 'A');
-      described.insert(upper);
-      if (upper == "GET") described.insert("HEAD");
-    }
-    std::string list;
-    for (const std::string& method : described) list += (list.empty() ? "" : ", ") + method;
-    Request request = request_for("OPTIONS", with_placeholders_filled(path));
-    EXPECT_EQ(router_.allowed_methods(request), list) << path;
-    ++found;
+TEST_F(Routes, DescribesEveryEndpointOnce) {
+  const auto paths = nlohmann::json::parse(openapi_text(router_)).at("paths");
+  std::set<std::string> page_files;
+  for (const EmbeddedFile& file : embedded_files())
+    if (file.path.starts_with("web/")) page_files.insert(std::string(file.path.substr(3)));
+  for (const Route& route : router_.routes()) {
+    const bool of_page = route.pattern == "/" || page_files.contains(route.pattern);
+    EXPECT_EQ(route.operation.has_value(), !of_page) << route.pattern;
+    const bool is_sample = route.pattern.starts_with("/scenes/");
+    EXPECT_EQ(paths.contains(route.pattern), !of_page && !is_sample) << route.pattern;
   }
-  EXPECT_GT(found, 15);
+  std::set<std::string> ids;
+  for (const auto& [path, methods] : paths.items())
+    for (const auto& [method, operation] : methods.items()) {
+      EXPECT_TRUE(ids.insert(operation.at("operationId")).second) << operation.at("operationId");
+      EXPECT_EQ(path_parameters(operation), placeholders(path)) << method << " " << path;
+    }
+  EXPECT_GT(ids.size(), 25u);
+}
+
+std::set<std::string> statuses_of(const nlohmann::json& operation) {
+  std::set<std::string> statuses;
+  for (const auto& [status, response] : operation.at("responses").items()) statuses.insert(status);
+  return statuses;
+}
+
+TEST_F(Routes, DerivesErrorsFromScopeBodyAndPath) {
+  using Statuses = std::set<std::string>;
+  const auto paths = nlohmann::json::parse(openapi_text(router_)).at("paths");
+  EXPECT_EQ(statuses_of(paths.at("/healthz").at("get")), (Statuses{"200", "default"}));
+  EXPECT_EQ(statuses_of(paths.at("/v1/limits").at("get")), (Statuses{"200", "304", "401", "403", "default"}));
+  EXPECT_EQ(statuses_of(paths.at("/v1/jobs/{id}").at("delete")),
+            (Statuses{"204", "401", "403", "404", "default"}));
+  EXPECT_EQ(statuses_of(paths.at("/v1/scenes/{id}/frame.png").at("get")),
+            (Statuses{"200", "304", "400", "401", "403", "404", "422", "429", "503", "504", "default"}));
+  EXPECT_EQ(statuses_of(paths.at("/v1/assets/{sha256}").at("put")),
+            (Statuses{"200", "201", "400", "401", "403", "408", "411", "413", "415", "422", "429", "503",
+                      "504", "default"}));
+}
+
+// Calls `visit` with each value of a member "$ref".
+void visit_references(const nlohmann::json& json, const std::function<void(const std::string&)>& visit) {
+  if (json.is_object() && json.contains("$ref")) visit(json.at("$ref"));
+  if (json.is_structured())
+    for (const auto& member : json) visit_references(member, visit);
+}
+
+TEST_F(Routes, ReferencesExistingComponents) {
+  const auto description = nlohmann::json::parse(openapi_text(router_));
+  int found = 0;
+  visit_references(description, [&](const std::string& reference) {
+    if (!reference.starts_with("#")) return;
+    EXPECT_TRUE(description.contains(nlohmann::json::json_pointer(reference.substr(1)))) << reference;
+    ++found;
+  });
+  EXPECT_GT(found, 100);
 }
 
 TEST_F(Routes, LogsOnlyHealthProbesAtDebugLevel) {
