@@ -6,12 +6,12 @@
 #include "server/api/render_options.h"
 #include "server/api/results.h"
 #include "server/base/embedded.h"
-#include "server/config/settings.h"
+#include "server/routes/limits.h"
 #include "server/routes/openapi.h"
 
 // Shared parts of the OpenAPI description. The file schemas.json contains the schemas, except these parts:
 //   sections of a request body, such as camera, and the options in Explanation   follow from render options;
-//   limits that are settings, in Limits                                         follow from settings;
+//   limits in Limits                                                            follow from limits.cpp;
 //   results of images                                                           follow from the result table.
 namespace orrery {
 namespace {
@@ -147,14 +147,6 @@ ordered_json results_schema(ResultOutput output) {
   return schema;
 }
 
-void add_limits(ordered_json& schema) {
-  for (const Setting& limit : limits()) {
-    schema["required"].push_back(limit.name);
-    schema["properties"][std::string(limit.name)] = {
-        {"type", "integer"}, {"minimum", limit.min}, {"description", std::string(limit.help) + "."}};
-  }
-}
-
 ordered_json schema_components(const ordered_json& options) {
   const auto files = embedded_files();
   const auto file = std::find_if(files.begin(), files.end(),
@@ -167,7 +159,7 @@ ordered_json schema_components(const ordered_json& options) {
       if (option.section == section) schema["properties"][std::string(option.key)] = options.at(option.key);
   }
   schemas["Explanation"]["properties"].update(schemas["render"]["properties"]);
-  add_limits(schemas["Limits"]);
+  add_limit_schemas(schemas["Limits"]);
   schemas["OrbitResults"] = results_schema(&ResultOutputs::orbit_frame);
   schemas["RefinementResults"] = results_schema(&ResultOutputs::refinement_frame);
   schemas["JobFrameResults"] = results_schema(&ResultOutputs::job_step);
