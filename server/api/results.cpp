@@ -131,6 +131,8 @@ constexpr ResultOutputs kOnlyStats{.image = false,
                                    .orbit_frame = false,
                                    .job_step = false};
 
+std::string text_of(const Json& json) { return json.is_null() ? "" : json.dump(); }
+
 // Row of --stats alone.
 constexpr Row of_stats(std::string_view member, Row::Json json, std::string_view label = {},
                        Row::Text line = nullptr) {
@@ -148,7 +150,6 @@ constexpr std::array kResults{
         .header = "Orrery-Samples",
         .former_header = "X-Samples",
         .header_type = "integer",
-        .text = [](In r) { return r.samples ? std::to_string(*r.samples) : ""; },
         .member = "samples",
         .member_type = "integer",
         .json = [](In r) { return r.samples ? Json(*r.samples) : Json(); }},
@@ -157,7 +158,6 @@ constexpr std::array kResults{
         .header = "Orrery-Rays",
         .former_header = "X-Rays",
         .header_type = "integer",
-        .text = [](In r) { return r.rays ? std::to_string(*r.rays) : ""; },
         .member = "rays",
         .member_type = "integer",
         .json = [](In r) { return r.rays ? Json(*r.rays) : Json(); }},
@@ -287,7 +287,7 @@ Fields result_headers(ResultOutput output, const ImageResults& results) {
   Fields fields;
   for (const Row& row : kResults) {
     if (!(row.in.*output) || row.header.empty()) continue;
-    const std::string value = row.text(results);
+    const std::string value = row.text ? row.text(results) : text_of(row.json(results));
     if (value.empty()) continue;
     fields.emplace_back(row.header, value);
     if (!row.former_header.empty()) fields.emplace_back(row.former_header, value);

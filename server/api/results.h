@@ -59,7 +59,7 @@ struct ImageResult {
   std::string_view header = {};             // name of the header; empty: none
   std::string_view former_header = {};      // name for clients of version 0.1; empty: none
   std::string_view header_type = "string";  // JSON Schema type of its value
-  Text text = nullptr;                      // value of the header
+  Text text = nullptr;                      // value of the header; null: JSON of the member
 
   std::string_view member = {};        // name of the JSON member; empty: none
   std::string_view stats_member = {};  // name in --stats=json if it differs
