@@ -1,8 +1,5 @@
 #include "server/app/app.h"
 
-#include <algorithm>
-#include <optional>
-
 #include "server/cache/asset_reader.h"
 
 namespace orrery {
@@ -37,13 +34,13 @@ App::App(const Settings& settings, Timer& timer)
           estimator_, memory_,    scenes_, settings_.interactive_rays, settings_.request_seconds},
       renders_(services_, settings.image_cache_bytes, settings.film_cache_bytes, settings_.request_rays),
       streams_(settings_.connections),
-      orbits_(services_, settings.max_orbit_streams, settings.request_seconds),
+      orbits_(services_, settings.max_orbit_streams),
       jobs_(services_, {settings.jobs, settings.max_finished_jobs, settings.job_bytes, settings.job_seconds,
                         settings.job_kept_seconds}) {}
 
 void App::read(Body& body, const Caller& caller, RequestTrace& trace, const ReadDocument& work) {
   const std::string bytes = std::move(body.bytes_);
-  run_watched(services_, caller, timer_.now(), trace, [&](const std::stop_token& stop) {
+  services_.run(caller, timer_.now(), trace, [&](const std::stop_token& stop) {
     const auto start = Clock::now();
     const AssetReader reading(assets_, admission_, caller.client, bytes.size(), stop);
     work(parse_document(bytes), reading);
@@ -54,32 +51,27 @@ void App::read(Body& body, const Caller& caller, RequestTrace& trace, const Read
 
 AssetStore::AddResult App::add_asset(const std::string& sha256, Body& body, const Caller& caller) {
   std::string bytes = std::move(body.bytes_);
-  AssetStore::AddResult added;
-  run_watched(services_, caller, timer_.now(), {}, [&](const std::stop_token& stop) {
+  return services_.run(caller, timer_.now(), {}, [&](const std::stop_token& stop) {
     const auto ticket =
         admission_.enter({Priority::interactive, caller.client, cost_of_reading(bytes.size())}, stop);
-    added = assets_.add(sha256, std::move(bytes), caller.client);
+    return assets_.add(sha256, std::move(bytes), caller.client);
   });
-  return added;
 }
 
-std::unique_ptr<Refinement> App::refine(RefinementSpec spec) {
+std::unique_ptr<Refinement> App::refine(RenderOrder order) {
   require_open();
-  auto refinement = std::make_unique<Refinement>(std::move(spec), services_, renders_.pictures(),
-                                                 settings_.request_seconds);
+  auto refinement = std::make_unique<Refinement>(std::move(order), services_, renders_.pictures());
   if (!refinement->is_known()) renders_.require_request_rays(refinement->scene(), refinement->plan());
   return refinement;
 }
 
 SettledPlan App::settle(const StoredScene& scene, const Plan& plan, const Caller& caller) {
   if (!plan.try_accelerators) return orrery::settle(scene, plan);
-  std::optional<SettledPlan> settled;
-  run_watched(services_, caller, timer_.now(), {.stage = Stage::settle}, [&](const std::stop_token& stop) {
+  return services_.run(caller, timer_.now(), {.stage = Stage::settle}, [&](const std::stop_token& stop) {
     const auto ticket = admission_.enter({Priority::interactive, caller.client, kFixedCost}, stop);
     const SceneStore::SizeGuard measured(scenes_, scene);
-    settled = orrery::settle(scene, plan, stop);
+    return orrery::settle(scene, plan, stop);
   });
-  return *settled;
 }
 
 Forecast App::forecast(const StoredScene& scene, const SettledPlan& plan, const Caller& caller) {
@@ -87,16 +79,14 @@ Forecast App::forecast(const StoredScene& scene, const SettledPlan& plan, const 
   Plan pilots = *plan;  // cost of the pilots: about 1 sample per pixel, more for small images
   pilots.samples = 1;
   pilots.free_samples = false;
-  std::optional<Forecast> found;
-  run_watched(services_, caller, timer_.now(), {.stage = Stage::settle}, [&](const std::stop_token& stop) {
-    auto ticket = admission_.enter(services_.demand_of(scene.scene(), pilots, caller.client), stop);
+  return services_.run(caller, timer_.now(), {.stage = Stage::settle}, [&](const std::stop_token& stop) {
+    auto ticket = admission_.enter(services_.demand_of(scene.scene(), pilots, caller), stop);
     const SceneStore::SizeGuard measured(scenes_, scene);
     RenderControl control = renders_.limits_of(scene.scene(), *plan);
     control.stop = stop;
     PoolExecutor executor(pool_, false, &ticket);
-    found = orrery::forecast(scene, plan, executor, control);
+    return orrery::forecast(scene, plan, executor, control);
   });
-  return *found;
 }
 
 void App::drain() { drains_.request_stop(); }

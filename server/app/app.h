@@ -60,7 +60,7 @@ class App {
   // Returns a progressive render, which the caller advances pass by pass. Throws Busy while draining. Throws
   // TooManyRays if the image is not cached and its estimated cost exceeds the limit of one request.
   // Refinement::next() throws the other errors.
-  std::unique_ptr<Refinement> refine(RefinementSpec spec);
+  std::unique_ptr<Refinement> refine(RenderOrder order);
 
   // Settles the plan as RenderService::render() would. Waits for a slot if accelerators must be tried. Throws
   // the errors of render().

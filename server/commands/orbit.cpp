@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "core/base/clock.h"
 #include "core/base/number.h"
 #include "core/load/scene_file.h"
 #include "core/plan/plan.h"

@@ -6,6 +6,7 @@
 #include "core/plan/options.h"
 #include "core/plan/plan.h"
 #include "server/rendering/pipeline.h"
+#include "server/scheduler/watch.h"
 
 namespace orrery {
 namespace {
@@ -47,7 +48,7 @@ void Job::run() {
         if (next == work().steps()) return std::nullopt;
         return next++;
       },
-      .render = [&](std::int64_t number) { return render(static_cast<int>(number), watch); },
+      .render = [&](std::int64_t number) { return render(static_cast<int>(number), watch.stop()); },
       .encode = [this](const Film& film) { return work().encode(film); },
       .stop = watch.stop(),
       .memory = memory_.get(),
@@ -55,32 +56,42 @@ void Job::run() {
                         Frame&& frame) { keep(static_cast<int>(number), std::move(frame)); }};
   std::exception_ptr error;
   try {
-    try {
-      pipeline.run();
-    } catch (const Cancelled&) {
-      watch.explain();
-    }
+    watch.run([&](const std::stop_token&) { pipeline.run(); });
   } catch (...) {
     error = std::current_exception();
   }
   end(error);
 }
 
-Plan Job::plan(int step) const { return make_plan(spec_.scene->scene(), work().request(step)); }
-
-double Job::rays_of_all() const {
-  const int steps = work().steps(), planned = std::min(steps, kMaxPlanned);
-  double sum = 0;
-  for (std::int64_t i = 0; i < planned; ++i)
-    sum += expected_rays(spec_.scene->scene(), plan(static_cast<int>(i * steps / planned)));
-  return sum * steps / planned;
-}
-
-RenderResult Job::render(int step, const WorkCancellation& watch) {
-  RenderResult rendered =
-      services_.retry_while_out_of_memory(watch.stop(), [&] { return try_render(step, watch); });
+RenderResult Job::render(int step, const std::stop_token& stop) {
+  const RenderOrder order =
+      make_order(spec_.scene, work().request(step), work().format(), {spec_.client, stop});
+  const Scene& scene = order.scene->scene();
+  const std::int64_t tiles = TileGrid(order.plan.width, order.plan.height).size();
+  // Assumes that all steps take as long as the step with the budget.
+  RenderControl control{.stop = stop,
+                        .max_s = kShareOfBudgets * static_cast<double>(limit_.count()) / work().steps()};
+  const bool has_passes = has_budget(order.plan.asked);  // their number is not known in advance
+  if (!has_passes)
+    control.progress = [this, step, rays = expected_rays(scene, order.plan)](int done, int) {
+      count(step, done, rays);
+    };
+  RenderResult rendered = services_.render_next(order, *memory_, true, control, [&] { begin(tiles); });
+  if (has_passes) {  // counts the rays of the chosen settings, not of the search
+    RenderRequest made;
+    static_cast<RenderSettings&>(made) = rendered.budget->settings;
+    count(step, tiles, expected_rays(scene, make_plan(scene, made)));
+  }
   take(step, rendered);
   return rendered;
+}
+
+void Job::begin(std::int64_t tiles) {
+  const std::lock_guard lock(mutex_);
+  if (!started_) started_ = services_.timer.now();
+  if (rays_ == 0) rays_ = rays_of_all();
+  tiles_a_step_ = tiles;
+  state_ = JobState::running;
 }
 
 void Job::take(int step, const RenderResult& rendered) {
@@ -93,38 +104,13 @@ void Job::take(int step, const RenderResult& rendered) {
   rays_ = rays;
 }
 
-RenderResult Job::try_render(int step, const WorkCancellation& watch) {
+double Job::rays_of_all() const {
   const Scene& scene = spec_.scene->scene();
-  const Plan asked = plan(step);
-  SlotRequest demand = services_.demand_of(scene, asked, spec_.client);
-  demand.priority = Priority::batch;
-  auto ticket = services_.admission.enter_again(demand, watch.stop());
-  memory_->settle(0);  // returns the memory granted to earlier steps
-  const int tiles = TileGrid(asked.width, asked.height).size();
-  {
-    const std::lock_guard lock(mutex_);
-    if (!started_) started_ = services_.timer.now();
-    if (rays_ == 0) rays_ = rays_of_all();
-    tiles_a_step_ = tiles;
-    state_ = JobState::running;
-  }
-  // Assumes that all steps take as long as the step with the budget.
-  RenderControl control{.stop = watch.stop(),
-                        .max_s = kShareOfBudgets * static_cast<double>(limit_.count()) / work().steps()};
-  const bool has_passes = has_budget(asked.asked);  // their number is not known in advance
-  if (!has_passes)
-    control.progress = [this, step, rays = expected_rays(scene, asked)](int done, int) {
-      count(step, done, rays);
-    };
-  RenderResult rendered = memory_->run(watch.stop(), [&] {
-    return services_.render(ticket, Priority::batch, *spec_.scene, asked, work().storage(), control);
-  });
-  if (has_passes) {  // counts the rays of the chosen settings, not of the search
-    RenderRequest made;
-    static_cast<RenderSettings&>(made) = rendered.budget->settings;
-    count(step, tiles, expected_rays(scene, make_plan(scene, made)));
-  }
-  return rendered;
+  const int steps = work().steps(), planned = std::min(steps, kMaxPlanned);
+  double sum = 0;
+  for (std::int64_t i = 0; i < planned; ++i)
+    sum += expected_rays(scene, make_plan(scene, work().request(static_cast<int>(i * steps / planned))));
+  return sum * steps / planned;
 }
 
 void Job::count(int step, std::int64_t done, double rays) {

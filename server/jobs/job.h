@@ -14,7 +14,6 @@
 #include "server/jobs/job_work.h"
 #include "server/rendering/frame.h"
 #include "server/rendering/render_services.h"
-#include "server/scheduler/watch.h"
 
 namespace orrery {
 
@@ -71,12 +70,10 @@ class Job {
 
  private:
   void run();
-  Plan plan(int step) const;
+  RenderResult render(int step, const std::stop_token& stop);
+  void begin(std::int64_t tiles);  // records that a step of `tiles` tiles has its slot
   void take(int step, const RenderResult& rendered);
   double rays_of_all() const;  // estimated rays of all steps, from their plans
-  RenderResult render(int step, const WorkCancellation& watch);
-  RenderResult try_render(int step,
-                          const WorkCancellation& watch);  // throws LimitExceeded if memory is short
   // Records that `done` tiles of a step are finished. `rays`: estimated cost of the whole step.
   void count(int step, std::int64_t done, double rays);
   void keep(int step, Frame&& frame);

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/budget/renderer.h"
+#include "core/image/encode/files.h"
 #include "core/plan/request.h"
 #include "server/base/shared_bytes.h"
 
@@ -24,7 +25,7 @@ struct JobResult {
 };
 
 // Kind of job: renders one image of a scene per step and makes files from the images. Each kind is a class in
-// the file of its routes in server/routes/. Job calls steps(), request(), storage(), add() and end() on its
+// the file of its routes in server/routes/. Job calls steps(), request(), format(), add() and end() on its
 // thread, and encode() and keep() on pool threads. The other functions must be thread-safe.
 class JobWork {
  public:
@@ -36,7 +37,8 @@ class JobWork {
   // Returns the request for image `step`, 0 <= step < steps(). REQUIRES: fewer than steps() images were
   // added.
   virtual RenderRequest request(int step) const = 0;
-  virtual FilmStorage storage() const = 0;
+  // Returns the format that determines the storage of the films; see storage_for().
+  virtual FileFormat format() const = 0;
 
   // Takes the next image. Images are added in order.
   virtual void add(const RenderResult& /*rendered*/) {}

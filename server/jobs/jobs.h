@@ -59,7 +59,6 @@ class Jobs {
   void require_place(const std::string& client) const;
   void forget_old();
   void forget(const std::vector<std::string>& ids);  // cancels running jobs
-  bool is_kept(const std::string& id) const { return bytes_.rank(id).has_value(); }
 
   const RenderServices services_;
   const Limits limits_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "core/plan/plan.h"
 #include "server/rendering/pipeline.h"
 #include "server/scheduler/watch.h"
 
@@ -14,12 +13,8 @@ constexpr double kLongestPeriod_s = 1e6;  // a clock overflows after 292 years
 
 }  // namespace
 
-OrbitBroadcast::OrbitBroadcast(OrbitSpec spec, const RenderServices& services,
-                               std::chrono::seconds frame_time)
-    : spec_(std::move(spec)),
-      services_(services),
-      memory_(services.memory.open(spec_.client)),
-      frame_time_(frame_time) {}
+OrbitBroadcast::OrbitBroadcast(OrbitSpec spec, const RenderServices& services)
+    : spec_(std::move(spec)), services_(services), memory_(services.memory.open(spec_.client)) {}
 
 OrbitBroadcast::~OrbitBroadcast() {
   if (thread_.joinable()) thread_.join();
@@ -120,23 +115,11 @@ std::optional<std::int64_t> OrbitBroadcast::next() {
 
 RenderResult OrbitBroadcast::render(std::int64_t number) {
   const WorkCancellation watch(nobody_watches_.get_token(), services_.ends, services_.timer,
-                               services_.timer.now(), {frame_time_, "request_seconds"});
-  try {
-    const Plan plan = make_plan(spec_.scene->scene(), spec_.path.at(number % spec_.frames));
-    return services_.retry_while_out_of_memory(watch.stop(), [&] { return try_render(plan, watch.stop()); });
-  } catch (const Cancelled&) {
-    watch.explain();
-  }
-}
-
-RenderResult OrbitBroadcast::try_render(const Plan& plan, const std::stop_token& stop) {
-  SlotRequest demand = services_.demand_of(spec_.scene->scene(), plan, spec_.client);
-  demand.subscribers = subscribers_;
-  auto ticket = services_.admission.enter_again(demand, stop);
-  memory_->settle(0);  // returns the memory granted to earlier frames
-  return memory_->run(stop, [&] {
-    return services_.render(ticket, Priority::interactive, *spec_.scene, plan, FilmStorage::srgb8,
-                            {.stop = stop});
+                               services_.timer.now(), {services_.request_seconds, "request_seconds"});
+  return watch.run([&](const std::stop_token& stop) {
+    const RenderOrder order = make_order(spec_.scene, spec_.path.at(number % spec_.frames), FileFormat::png,
+                                         {spec_.client, stop, subscribers_});
+    return services_.render_next(order, *memory_, false, {.stop = stop});
   });
 }
 

@@ -18,8 +18,8 @@ namespace orrery {
 // mailboxes are full. It resumes at the next frame if fps is 0, otherwise at the frame that is due.
 class OrbitBroadcast {
  public:
-  // `frame_time`: time limit for one frame.
-  OrbitBroadcast(OrbitSpec spec, const RenderServices& services, std::chrono::seconds frame_time);
+  // Each frame may take request_seconds.
+  OrbitBroadcast(OrbitSpec spec, const RenderServices& services);
   ~OrbitBroadcast();
 
   const OrbitSpec& spec() const { return spec_; }
@@ -43,7 +43,6 @@ class OrbitBroadcast {
   void run();
   std::optional<std::int64_t> next();
   RenderResult render(std::int64_t number);
-  RenderResult try_render(const Plan& plan, const std::stop_token& stop);
   void deliver(std::int64_t number, Frame&& frame);
   // REQUIRES for the functions below: mutex_ is held.
   void post();  // moves finished frames into the mailboxes
@@ -55,7 +54,6 @@ class OrbitBroadcast {
   const RenderServices services_;
   const std::shared_ptr<WorkAccount> memory_;  // account of films; encoded frames have another one
   const std::shared_ptr<Subscribers> subscribers_ = std::make_shared<Subscribers>();
-  const std::chrono::seconds frame_time_;
   std::stop_source nobody_watches_;  // requested when the last viewer disconnects
   mutable std::mutex mutex_;         // guards the members below
   std::condition_variable_any changed_;

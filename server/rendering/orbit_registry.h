@@ -11,8 +11,7 @@ namespace orrery {
 // Registry of the orbits that have viewers. Thread-safe.
 class OrbitRegistry {
  public:
-  OrbitRegistry(const RenderServices& services, int max_orbits, std::chrono::seconds frame_time)
-      : services_(services), max_(max_orbits), frame_time_(frame_time) {}
+  OrbitRegistry(const RenderServices& services, int max_orbits) : services_(services), max_(max_orbits) {}
 
   // Adds a viewer to an orbit with the same key, or to a new orbit. Throws LimitExceeded if there are too
   // many orbits, or ClientLimitExceeded if the client watches too many of them.
@@ -25,7 +24,6 @@ class OrbitRegistry {
 
   const RenderServices services_;
   const int max_;
-  const std::chrono::seconds frame_time_;
   std::mutex mutex_;
   std::list<std::weak_ptr<OrbitBroadcast>> casts_;  // owned by their viewers
 };

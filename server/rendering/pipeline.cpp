@@ -2,9 +2,13 @@
 
 #include <condition_variable>
 #include <exception>
+#include <future>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <utility>
+
+#include "core/base/clock.h"
 
 namespace orrery {
 namespace {
@@ -29,13 +33,9 @@ class Line {
     const std::int64_t place = entered_;  // only this thread changes entered_
     const auto shared = std::make_shared<RenderResult>(std::move(rendered));
     pipeline_.pool.enqueue(pipeline_.background, [this, place, number, shared, render_ms] {
-      Encoded encoded{.number = number, .frame = {}, .error = {}};
-      try {
-        encoded.frame = encode(std::move(*shared), render_ms);
-      } catch (...) {
-        encoded.error = std::current_exception();
-      }
-      leave(place, std::move(encoded));
+      std::packaged_task<Frame()> encoding([&] { return encode(*shared, render_ms); });
+      encoding();
+      leave(place, number, encoding.get_future());
     });
     const std::lock_guard lock(mutex_);
     ++entered_;
@@ -48,17 +48,16 @@ class Line {
   }
 
  private:
-  struct Encoded {
-    std::int64_t number;
-    Frame frame;
-    std::exception_ptr error;
-  };
-
   // Encodes a frame. If memory is short, a frame below 32 MiB is still kept, and the next render waits for
   // memory.
-  Frame encode(RenderResult&& rendered, double render_ms) const {
+  Frame encode(const RenderResult& rendered, double render_ms) const {
     const TaskScope scope({nullptr, &pipeline_.stop});
-    Frame frame = encode_frame(std::move(rendered), render_ms, pipeline_.encode);
+    const auto start = Clock::now();
+    Frame frame{.bytes = pipeline_.encode(rendered.film),
+                .stats = rendered.stats,
+                .certificate = rendered.certificate,
+                .render_ms = render_ms};
+    frame.encode_ms = milliseconds_since(start);
     if (!memory_) return frame;
     frame.bytes.shrink_to_fit();
     const auto charge = [&] { return MemoryCharge(frame.bytes.capacity()); };
@@ -72,23 +71,18 @@ class Line {
     changed_.wait(lock, [&] { return entered_ == left_; });
   }
 
-  void leave(std::int64_t place, Encoded&& encoded) {
+  void leave(std::int64_t place, std::int64_t number, std::future<Frame> frame) {
     const std::lock_guard lock(mutex_);
-    waiting_.emplace(place, std::move(encoded));
-    for (; !waiting_.empty() && waiting_.begin()->first == left_; ++left_, waiting_.erase(waiting_.begin()))
-      deliver(std::move(waiting_.begin()->second));
-    changed_.notify_all();
-  }
-
-  void deliver(Encoded&& encoded) {
-    if (error_) return;
-    error_ = encoded.error;
-    if (error_) return;
-    try {
-      pipeline_.deliver(encoded.number, std::move(encoded.frame));
-    } catch (...) {
-      error_ = std::current_exception();
+    waiting_.emplace(place, std::pair(number, std::move(frame)));
+    for (; !waiting_.empty() && waiting_.begin()->first == left_; ++left_, waiting_.erase(waiting_.begin())) {
+      auto& [first, encoded] = waiting_.begin()->second;
+      if (!error_) try {
+          pipeline_.deliver(first, encoded.get());
+        } catch (...) {
+          error_ = std::current_exception();
+        }
     }
+    changed_.notify_all();
   }
 
   const Pipeline& pipeline_;
@@ -96,7 +90,8 @@ class Line {
   std::mutex mutex_;                           // guards the members below
   std::condition_variable changed_;
   std::int64_t entered_ = 0, left_ = 0;
-  std::map<std::int64_t, Encoded> waiting_;  // by position, until all earlier frames are delivered
+  // Numbers and encoded frames by position, until all earlier frames are delivered.
+  std::map<std::int64_t, std::pair<std::int64_t, std::future<Frame>>> waiting_;
   std::exception_ptr error_;
 };
 

@@ -1,24 +1,14 @@
 #pragma once
 
-#include <chrono>
 #include <memory>
 #include <optional>
 #include <vector>
 
-#include "core/plan/request.h"
 #include "core/render/progressive.h"
 #include "server/cache/pictures.h"
 #include "server/rendering/render_services.h"
 
 namespace orrery {
-
-// Parameters of a progressive render.
-struct RefinementSpec {
-  std::shared_ptr<const StoredScene> scene;
-  RenderRequest request;
-  Plan plan;  // plan of `request`
-  std::string client;
-};
 
 // Progressive render of one image. Each pass adds samples and returns the same PNG as a single render with
 // that many samples. No sample is traced twice. Each pass waits for its own slot. No slot is held between
@@ -33,12 +23,12 @@ class Refinement {
     std::uint64_t rays = 0;               // this pass
   };
 
-  // `pictures`: cache for the images of the passes. `pass_time`: time limit for one pass.
-  Refinement(RefinementSpec spec, const RenderServices& services, Pictures& pictures,
-             std::chrono::seconds pass_time);
+  // `order`: final image, without a budget. `pictures`: cache for the images of the passes. Each pass may
+  // take request_seconds.
+  Refinement(RenderOrder order, const RenderServices& services, Pictures& pictures);
 
-  const Scene& scene() const { return spec_.scene->scene(); }
-  const Plan& plan() const { return spec_.plan; }
+  const Scene& scene() const { return order_.scene->scene(); }
+  const Plan& plan() const { return order_.plan; }
   // Returns whether the final image is cached. If so, it is the only step, and nothing is rendered.
   bool is_known() const { return known_ != nullptr; }
   bool at_end() const { return next_ == samples_.size(); }
@@ -46,16 +36,15 @@ class Refinement {
   // Returns the next image, or nullopt after the last image and after an exception. While draining, only the
   // first image is returned. Throws the errors of RenderService::render(), but later passes are not rejected
   // if the queue is full.
-  std::optional<Step> next(const std::stop_token& gone);
+  std::optional<Step> next();
 
  private:
-  Step render(int samples, const std::stop_token& stop, Stage& stage);
+  Step render(int samples, const std::stop_token& stop, RequestTrace& trace);
   std::string key_of(int samples) const;
 
-  const RefinementSpec spec_;
+  const RenderOrder order_;
   const RenderServices services_;
   Pictures& pictures_;
-  const std::chrono::seconds pass_time_;
   const std::vector<int> samples_;  // samples per pixel after each pass
   const std::shared_ptr<const Picture> known_;
   const std::shared_ptr<WorkAccount> memory_;

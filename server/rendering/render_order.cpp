@@ -9,14 +9,17 @@ namespace orrery {
 
 std::string RenderOrder::key() const { return work_key(scene->scene(), request); }
 
-RenderOrder make_order(SceneStore::Prepared scene, RenderRequest request, FileFormat format, Caller caller,
-                       RequestTrace& trace) {
+RenderOrder make_order(SceneStore::Prepared scene, RenderRequest request, FileFormat format, Caller caller) {
   const auto start = Clock::now();
   require_layers_kept(request, format);
   choose_space(request, format);
   Plan plan = make_plan(scene->scene(), request);
-  trace.timing.plan += milliseconds_since(start);
-  return {std::move(scene), std::move(request), format, std::move(plan), std::move(caller)};
+  return {.scene = std::move(scene),
+          .request = std::move(request),
+          .format = format,
+          .plan = std::move(plan),
+          .caller = std::move(caller),
+          .plan_ms = milliseconds_since(start)};
 }
 
 }  // namespace orrery

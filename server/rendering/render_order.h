@@ -1,10 +1,12 @@
 #pragma once
 
+#include <memory>
 #include <stop_token>
 #include <string>
 
 #include "core/image/encode/files.h"
 #include "core/plan/request.h"
+#include "server/base/subscribers.h"
 #include "server/cache/scene_store.h"
 #include "server/telemetry/service_counters.h"
 
@@ -23,26 +25,27 @@ struct RequestTrace {
 
 // Client of a request.
 struct Caller {
-  std::string client;    // client that the work is charged to
-  std::stop_token gone;  // stop is requested once no client waits for the result
+  std::string client;                             // client that the work is charged to
+  std::stop_token gone;                           // stop is requested once no client waits for the result
+  std::shared_ptr<Subscribers> subscribers = {};  // all clients of shared work; null: not shared
 };
 
-// One image to render. make_order() is the only function that creates orders, so that scene, request and plan
-// always belong together.
+// One image to render: an image of its own, or a frame of an orbit or a job. make_order() is the only
+// function that creates orders, so that scene, request and plan always belong together.
 struct RenderOrder {
   SceneStore::Prepared scene;
   RenderRequest request;
   FileFormat format;
   Plan plan;
   Caller caller;
+  double plan_ms;  // duration of make_order()
 
   // Returns the key of the image, which does not depend on its format.
   std::string key() const;
 };
 
-// Plans the image. Adds the duration to `trace`. Throws the InputError of make_plan(), and InputError if the
-// format cannot store the requested layers.
-RenderOrder make_order(SceneStore::Prepared scene, RenderRequest request, FileFormat format, Caller caller,
-                       RequestTrace& trace);
+// Plans the image. Throws the InputError of make_plan(), and InputError if the format cannot store the
+// requested layers.
+RenderOrder make_order(SceneStore::Prepared scene, RenderRequest request, FileFormat format, Caller caller);
 
 }  // namespace orrery

@@ -50,10 +50,11 @@ RenderService::RenderService(const RenderServices& services, std::size_t image_c
       films_(film_cache_bytes, film_cache_bytes / 4) {}
 
 Rendered RenderService::render(const RenderOrder& order, RequestTrace& trace) {
+  trace.timing.plan += order.plan_ms;
   Run run{.order = order,
           .trace = trace,
           .since = services_.timer.now(),
-          .demand = services_.demand_of(order.scene->scene(), order.plan, order.caller.client),
+          .demand = services_.demand_of(order.scene->scene(), order.plan, order.caller),
           .key = order.key()};
   run.demand.subscribers = subscribers_.of(run.key);
   run.before_s = (trace.timing.load + trace.timing.plan + trace.timing.queue) / 1000;
@@ -65,10 +66,8 @@ Rendered RenderService::look_up(Run& run) {
   const auto make_image = [&](const std::stop_token& nobody_waits) {
     require_request_rays(run.scene(), run.order.plan);
     run.trace.stage = Stage::queue;
-    Picture picture;
-    run_watched(services_, {run.order.caller.client, nobody_waits}, run.since, run.trace,
-                [&](const std::stop_token& stop) { picture = make(run, stop); });
-    return picture;
+    return services_.run({run.order.caller.client, nobody_waits}, run.since, run.trace,
+                         [&](const std::stop_token& stop) { return make(run, stop); });
   };
   if (run.time_limit_s() > 0) {  // how long the client waits decides its pixels
     const auto picture = std::make_shared<const Picture>(make_image(run.order.caller.gone));
@@ -145,8 +144,7 @@ RenderResult RenderService::render_film(Run& run, FilmStorage storage, const std
   control.stop = stop;
   control.used_s = [this, &run] { return run.waited_s(services_.timer); };
   return WorkAccount::current()->run(stop, [&] {
-    return services_.render(*run.ticket, run.demand.priority, *run.order.scene, run.order.plan, storage,
-                            control);
+    return services_.render(*run.ticket, run.demand.priority == Priority::batch, run.order, storage, control);
   });
 }
 

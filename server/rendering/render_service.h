@@ -1,14 +1,11 @@
 #pragma once
 
-#include <chrono>
 #include <memory>
 
 #include "core/budget/budget.h"
 #include "server/base/subscribers.h"
 #include "server/cache/pictures.h"
-#include "server/rendering/render_order.h"
 #include "server/rendering/render_services.h"
-#include "server/scheduler/watch.h"
 
 namespace orrery {
 
@@ -16,25 +13,6 @@ struct Rendered {
   std::shared_ptr<const Picture> picture;
   bool made_now;  // rendered for this request, neither cached nor shared
 };
-
-// Calls work(stop), and charges its memory to the caller. Requests `stop` once the client disconnects, the
-// service ends, or request_seconds have passed since `since`. Counts cancelled work by the stage in `trace`.
-// Throws Busy while draining, and Cancelled, TimedOut and the errors of `work`.
-template <class Work>
-void run_watched(const RenderServices& services, const Caller& caller, Clock::time_point since,
-                 const RequestTrace& trace, const Work& work) {
-  services.require_open();
-  const WorkCancellation watch(caller.gone, services.ends, services.timer, since,
-                               {services.request_seconds, "request_seconds"});
-  const auto memory = services.memory.open(caller.client);
-  const std::stop_token stop = watch.stop();
-  try {
-    memory->run(stop, [&] { work(stop); });
-  } catch (const Cancelled&) {
-    ++services.meters.cancelled[static_cast<std::size_t>(trace.stage)];
-    watch.explain();
-  }
-}
 
 // Renders images for requests, with a cache of encoded images and a cache of films. Thread-safe.
 class RenderService {

@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <stop_token>
 
 #include "core/budget/renderer.h"
 #include "core/plan/cost.h"
+#include "core/render/views.h"
 #include "server/cache/scene_store.h"
+#include "server/rendering/render_order.h"
 #include "server/scheduler/admission.h"
 #include "server/scheduler/ray_estimator.h"
+#include "server/scheduler/watch.h"
 #include "server/scheduler/worker_pool.h"
 #include "server/telemetry/service_counters.h"
 
@@ -40,38 +44,72 @@ struct RenderServices {
 
   // Returns the slot request for a frame. Its cost is the estimate in usual rays plus kFixedCost. The frame
   // is batch work if either the plan alone or the learned estimate exceeds interactive_rays.
-  SlotRequest demand_of(const Scene& scene, const Plan& plan, const std::string& client) const {
+  SlotRequest demand_of(const Scene& scene, const Plan& plan, const Caller& caller) const {
     const double rays = estimator.estimate(scene, plan), weight = ray_weight(scene, plan);
     const bool small = weight * std::max(rays, expected_rays(scene, plan)) <= interactive_rays;
-    return {small ? Priority::interactive : Priority::batch, client, kFixedCost + weight * rays};
+    return {small ? Priority::interactive : Priority::batch, caller.client, kFixedCost + weight * rays,
+            caller.subscribers};
   }
 
-  // Returns render(). If render() throws LimitExceeded because other work holds the memory, waits and calls
-  // it again. Throws the other errors of render(), and Cancelled once `stop` is requested.
-  template <class Render>
-  RenderResult retry_while_out_of_memory(const std::stop_token& stop, const Render& render) const {
-    for (;;) try {
-        return render();
-      } catch (const LimitExceeded& busy) {
-        pause(busy.retry_after_s(), stop);
+  // Returns work(stop), and charges its memory to `account`. Requests `stop` once the client disconnects, the
+  // service ends, or request_seconds have passed since `since`. Counts cancelled work by the stage in
+  // `trace`. Throws Busy once the service ends, Cancelled, TimedOut and the errors of `work`.
+  template <class Work>
+  auto run(const Caller& caller, Clock::time_point since, const RequestTrace& trace, WorkAccount& account,
+           const Work& work) const {
+    const WorkCancellation watch(caller.gone, ends, timer, since, {request_seconds, "request_seconds"});
+    return watch.run([&](const std::stop_token& stop) {
+      try {
+        return account.run(stop, [&] { return work(stop); });
+      } catch (const Cancelled&) {
+        ++meters.cancelled[static_cast<std::size_t>(trace.stage)];
+        throw;
       }
+    });
   }
 
-  // Renders a frame in the slot of `ticket`. Frames of interactive priority have precedence on the threads.
-  // Reports the measured cost to the ticket and the size of the scene to the store. Throws the errors of
-  // render_frame().
-  RenderResult render(Admission::Ticket& ticket, Priority priority, const StoredScene& scene,
-                      const Plan& plan, FilmStorage storage, const RenderControl& control) const {
-    PoolExecutor executor(pool, priority == Priority::batch, &ticket);
-    const SceneStore::SizeGuard measured(scenes, scene);
-    const SettledPlan settled = settle(scene, plan, control.stop);
-    RenderResult result = render_frame(scene, settled, storage, executor, control);
+  // Calls run() with a new account of the caller. Also throws Busy while draining.
+  template <class Work>
+  auto run(const Caller& caller, Clock::time_point since, const RequestTrace& trace, const Work& work) const {
+    require_open();
+    return run(caller, since, trace, *memory.open(caller.client), work);
+  }
+
+  // Renders an image in the slot of `ticket`. `background`: see WorkerPool::for_each(). Reports the measured
+  // cost to the ticket and the size of the scene to the store. Throws the errors of render_frame().
+  RenderResult render(Admission::Ticket& ticket, bool background, const RenderOrder& order,
+                      FilmStorage storage, const RenderControl& control) const {
+    PoolExecutor executor(pool, background, &ticket);
+    const SceneStore::SizeGuard measured(scenes, *order.scene);
+    const SettledPlan settled = settle(*order.scene, order.plan, control.stop);
+    RenderResult result = render_frame(*order.scene, settled, storage, executor, control);
     Plan done = *settled;
     if (result.budget) done.samples = *result.budget->settings.samples;
     done.free_samples = false;
-    count(ticket, scene.scene(), done, result.stats.counts.rays.total(),
+    count(ticket, order.scene->scene(), done, result.stats.counts.rays.total(),
           result.stats.build_ms + result.stats.trace_ms);
     return result;
+  }
+
+  // Renders the next frame of an orbit or a job in a slot of its own, and charges its memory to `account`,
+  // the account of the films of all its frames. A full queue does not reject the frame. `background`: batch
+  // priority. Calls `begun` when the frame gets its slot. If other work holds the memory, waits and
+  // starts again. Throws Cancelled once control.stop is requested, and the errors of render().
+  RenderResult render_next(
+      const RenderOrder& order, WorkAccount& account, bool background, const RenderControl& control,
+      const std::function<void()>& begun = [] {}) const {
+    for (;;) try {
+        SlotRequest demand = demand_of(order.scene->scene(), order.plan, order.caller);
+        if (background) demand.priority = Priority::batch;
+        Admission::Ticket ticket = admission.enter_again(demand, control.stop);
+        account.settle(0);  // returns the memory granted to earlier frames
+        begun();
+        return account.run(control.stop, [&] {
+          return render(ticket, background, order, storage_for(order.format, order.plan), control);
+        });
+      } catch (const LimitExceeded& busy) {
+        pause(busy.retry_after_s(), control.stop);
+      }
   }
 
   // Records the measured cost of the plan's samples in the ticket, the estimator and the metrics.

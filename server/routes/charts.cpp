@@ -20,7 +20,7 @@ class ChartWork final : public JobWork {
 
   int steps() const override { return study_.pictures(); }
   RenderRequest request(int step) const override { return study_.request(step); }
-  FilmStorage storage() const override { return FilmStorage::linear32; }
+  FileFormat format() const override { return FileFormat::exr; }  // errors of linear values
   void add(const RenderResult& rendered) override { study_.add(rendered); }
   std::string encode(const Film&) const override { return {}; }
   void keep(int, std::string&&) override {}

@@ -9,7 +9,7 @@ namespace {
 Response frame(App& app, Request& request) {
   RequestTrace trace;
   const RenderOrder order = make_order(app.scenes().find(request.path_value("id")), read_query(request),
-                                       FileFormat::png, caller_of(request), trace);
+                                       FileFormat::png, caller_of(request));
   const Scene& scene = order.scene->scene();
   const RenderRequest& wanted = order.request;
 

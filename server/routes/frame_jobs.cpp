@@ -26,12 +26,12 @@ class FrameWork final : public JobWork {
 
   int steps() const override { return static_cast<int>(files_.size()); }
   RenderRequest request(int step) const override { return path_.at(step); }
-  FilmStorage storage() const override { return FilmStorage::srgb8; }
+  FileFormat format() const override { return FileFormat::png; }
   void add(const RenderResult& rendered) override {
     results_[added_++] = result_members(&ResultOutputs::job_step, results_of(rendered)).dump();
     if (const auto scene = scene_.lock()) budget_.add(scene->scene(), rendered, path_);
   }
-  std::string encode(const Film& film) const override { return encode_film(film, FileFormat::png); }
+  std::string encode(const Film& film) const override { return encode_film(film, format()); }
   void keep(int step, std::string&& encoded) override {
     encoded.shrink_to_fit();
     files_[static_cast<std::size_t>(step)] = std::move(encoded);

@@ -1,6 +1,5 @@
 #include <nlohmann/json.hpp>
 
-#include "core/plan/plan.h"
 #include "core/plan/warnings.h"
 #include "server/app/app.h"
 #include "server/routes/answers.h"
@@ -27,7 +26,6 @@ struct RefinementRequest {
   std::shared_ptr<const void> place;
   std::shared_ptr<Refinement> refinement;
   std::optional<Refinement::Step> first;
-  std::stop_token gone;
 };
 
 // Writes an image. Skips an image that exceeds the quota of response bytes, but throws LimitExceeded for the
@@ -49,7 +47,7 @@ bool write(PictureWriter& writer, const Refinement& refinement, const Refinement
 
 void send(const RefinementRequest& request, PictureWriter&& writer) {
   try {
-    for (auto step = request.first; step; step = request.refinement->next(request.gone))
+    for (auto step = request.first; step; step = request.refinement->next())
       if (!write(writer, *request.refinement, *step)) return;
   } catch (const Cancelled&) {
     return;  // the client has disconnected
@@ -64,17 +62,15 @@ Response refine(App& app, Request& request) {
   require_layers_kept(wanted, FileFormat::png);
   require_no_budget(wanted, "a refinement");
   require_picture(wanted, "a refinement");
-  const Plan plan = make_plan(scene->scene(), wanted);
+  RenderOrder order = make_order(scene, wanted, FileFormat::png, caller_of(request));
   const StreamFormat format = negotiate_stream(request);
   Response response;
   set_stream_headers(response, format);
-  set_results(response, {.warnings = find_warnings(scene->scene(), plan)});
+  set_results(response, {.warnings = find_warnings(scene->scene(), order.plan)});
   if (request.method == "HEAD") return response;
-  RefinementRequest refined{.place = app.streams().open(request.client),
-                            .refinement = app.refine({scene, wanted, plan, request.client}),
-                            .first = {},
-                            .gone = request.gone};
-  refined.first = refined.refinement->next(request.gone);  // errors can still set the status
+  RefinementRequest refined{
+      .place = app.streams().open(request.client), .refinement = app.refine(std::move(order)), .first = {}};
+  refined.first = refined.refinement->next();  // errors can still set the status
   set_results(response, {.warnings = refined.first->picture->warnings});
   response.stream = [refined, format](Sink& sink) { send(refined, PictureWriter(sink, format)); };
   return response;

@@ -28,7 +28,7 @@ Response render(App& app, Request& request) {
   RequestTrace trace;
   RenderBody body = read_render_body(app, request, trace);
   const RenderOrder order =
-      make_order(std::move(body.scene), std::move(body.request), format_of(type), caller_of(request), trace);
+      make_order(std::move(body.scene), std::move(body.request), format_of(type), caller_of(request));
   const Rendered rendered = app.renders().render(order, trace);
   Response response = picture_response(type, rendered, trace);
   set_content_location(response, type, order.scene->scene(), *rendered.picture, request.prefix);

@@ -30,6 +30,16 @@ class WorkCancellation {
   // Returns a token that is stopped by the first of these events.
   std::stop_token stop() const { return source_.get_token(); }
 
+  // Returns work(stop()). If that throws Cancelled, throws the error of explain() instead.
+  template <class Work>
+  auto run(const Work& work) const {
+    try {
+      return work(stop());
+    } catch (const Cancelled&) {
+      explain();
+    }
+  }
+
   // Throws the error for the first event: Cancelled, Busy or TimedOut.
   [[noreturn]] void explain() const;
 

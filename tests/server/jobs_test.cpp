@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <future>
 #include <nlohmann/json.hpp>
 
@@ -30,7 +31,7 @@ class FakeWork final : public JobWork {
 
   int steps() const override { return added_ < enough_ ? steps_ : std::max(enough_, added_); }
   RenderRequest request(int) const override { return request_; }
-  FilmStorage storage() const override { return FilmStorage::srgb8; }
+  FileFormat format() const override { return FileFormat::png; }
   void add(const RenderResult& rendered) override {
     if (rendered.budget) static_cast<RenderSettings&>(request_) = rendered.budget->settings;
     then_(added_++);
@@ -272,14 +273,41 @@ TEST_F(JobsTest, UpdatesRayEstimateOfScene) {
   EXPECT_DOUBLE_EQ(estimator_.estimate(scene_->scene(), plan), expected + share * (traced - expected));
 }
 
+// A frame that lacks memory gives its slot back, and starts again once other clients free the memory.
+TEST_F(JobsTest, StartsFrameAgainAfterShortageOfMemory) {
+  constexpr std::size_t kMega = 1 << 20;
+  WorkMemory memory(16 * kMega);
+  const auto own = memory.open("a");
+  auto others = memory.open("b");
+  std::optional<MemoryCharge> held;
+  others->run({}, [&] { held.emplace(8 * kMega); });
+  ASSERT_EQ(memory.bytes(), 8 * kMega);
+  const auto scene = std::make_shared<const StoredScene>(scene_->shared_scene());  // charged to `memory`
+  const RenderOrder order =
+      make_order(scene, test::size(2048, 1024), FileFormat::png, {"a", {}});  // film of 6 MiB
+  std::atomic<int> begun = 0;
+  auto width = std::async(std::launch::async, [&] {
+    return services_.render_next(order, *own, false, {}, [&] { ++begun; }).film.width();
+  });
+  EXPECT_TRUE(test::eventually([&] { return begun == 1 && admission_.running() == 0; }));
+  held.reset();
+  others.reset();
+  EXPECT_TRUE(test::eventually([&] {
+    timer_.advance(seconds(1));
+    return width.wait_for(seconds(0)) == std::future_status::ready;
+  }));
+  EXPECT_EQ(width.get(), 2048);
+  EXPECT_EQ(begun, 2);
+}
+
 // The measured rate counts traced rays, not estimated ones.
 TEST_F(JobsTest, ReportsTracedRaysToAdmission) {
   Admission admission({.running = 1, .max_queued_rays = 1}, timer_);
   const RenderServices services = services_with(admission);
-  const Plan plan = make_plan(scene_->scene(), test::size(8, 8));
+  const RenderOrder order = make_order(scene_, test::size(8, 8), FileFormat::png, {"a", {}});
   {
     auto ticket = admission.enter({Priority::interactive, "a", 1e12}, {});
-    services.render(ticket, Priority::interactive, *scene_, plan, FilmStorage::srgb8, {});
+    services.render(ticket, false, order, FilmStorage::srgb8, {});
     timer_.advance(seconds(1));
   }
   const double rate = kFixedCost + static_cast<double>(meters_.rays);
