@@ -1,6 +1,7 @@
 #include "core/accuracy/unit_histogram.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -26,7 +27,8 @@ void UnitHistogram::add_times(double value, double times) {
 }
 
 void UnitHistogram::add(const UnitHistogram& other) {
-  for (std::size_t i = 0; i < kBins; ++i) {
+  if (bins_.empty()) bins_.resize(other.bins_.size());
+  for (std::size_t i = 0; i < other.bins_.size(); ++i) {
     bins_[i].count += other.bins_[i].count;
     bins_[i].sum += other.bins_[i].sum;
   }
@@ -34,6 +36,7 @@ void UnitHistogram::add(const UnitHistogram& other) {
 
 UnitHistogram UnitHistogram::scaled(double counts, double values) const {
   UnitHistogram all;
+  all.bins_.resize(bins_.size());
   for (const Bin& bin : bins_)
     if (bin.count > 0) all.add_times(values * bin.sum / bin.count, counts * bin.count);
   return all;
@@ -67,7 +70,7 @@ bool UnitHistogram::rejects(double mean, double log_odds) const {
   for (int j = 0; j < kBets; ++j) {
     const double share = j == 0 ? 0.999 : std::exp2(-0.75 * j), bet = share / (1 - mean);
     double sum = 0;
-    for (std::size_t i = 0; i < kBins; ++i) {
+    for (std::size_t i = 0; i < bins_.size(); ++i) {
       const Bin& bin = bins_[i];
       if (bin.count == 0) continue;
       const double low = low_of(i), high = i + 1 < kBins ? low_of(i + 1) : 1;
@@ -86,6 +89,7 @@ bool UnitHistogram::rejects(double mean, double log_odds) const {
 
 double UnitHistogram::min_upper_mean(double count, double delta) {
   UnitHistogram zeros;
+  zeros.bins_.resize(1);
   zeros.bins_[0].count = count;
   return zeros.upper_mean(delta);
 }

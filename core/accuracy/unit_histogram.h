@@ -1,17 +1,18 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
+#include <vector>
 
 namespace orrery {
 
-// Histogram of values in [0, 1]: count and sum per bin. There are four bins per power of two. Const functions
-// are thread-safe.
+// Histogram of values in [0, 1]: count and sum per bin. There are four bins per power of two. An empty
+// histogram allocates nothing. Const functions are thread-safe.
 class UnitHistogram {
  public:
   // Adds a value, clamped to [0, 1]. Positive values are rounded up to 29 significant bits and to at least
   // 2^-64. Sums of up to 2^24 values in a bin are then exact and independent of their order.
   void add(double value) {
+    if (bins_.empty()) bins_.resize(kBins);
     if (value <= 0)
       bins_[0].count += 1;
     else
@@ -46,7 +47,7 @@ class UnitHistogram {
   // logarithm of 1/delta.
   bool rejects(double mean, double log_odds) const;
 
-  std::array<Bin, kBins> bins_{};
+  std::vector<Bin> bins_;  // kBins, or none if empty
 };
 
 }  // namespace orrery

@@ -71,6 +71,7 @@ Refinement::Step Refinement::render(int samples, const std::stop_token& stop, Re
                   .certificate = certify(plan(), stats),
                   .warnings = find_warnings(scene(), plan(), stats.counts)};
   picture.bytes.shrink_to_fit();  // it may be cached
+  picture.stats.halves = {};
   step.encode_ms = milliseconds_since(start);
   step.picture = std::make_shared<const Picture>(std::move(picture));
   pictures_.keep(key_of(samples), order_.caller.client, step.picture);

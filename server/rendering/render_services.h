@@ -83,6 +83,7 @@ struct RenderServices {
     const SceneStore::SizeGuard measured(scenes, *order.scene);
     const SettledPlan settled = settle(*order.scene, order.plan, control.stop);
     RenderResult result = render_frame(*order.scene, settled, storage, executor, control);
+    result.stats.halves = {};  // large, and only the certificate needs them
     Plan done = *settled;
     if (result.budget) done.samples = *result.budget->settings.samples;
     done.free_samples = false;

@@ -19,7 +19,8 @@ const std::stop_token kNotCancelled;
 Picture picture(std::string bytes) { return {.bytes = std::move(bytes), .stats = {}, .certificate = {}}; }
 
 TEST(Pictures, CachesUntilSpaceIsNeeded) {
-  Pictures pictures(10'000);
+  const std::size_t most = 5 * held_bytes(picture(std::string(3000, 'a'))) / 2;
+  Pictures pictures(most);
   int made = 0;
   const auto get = [&](const std::string& key) {
     return pictures.get(key, {kNotCancelled}, [&](const auto&) {
@@ -32,10 +33,23 @@ TEST(Pictures, CachesUntilSpaceIsNeeded) {
   EXPECT_EQ(get("a").value->bytes, std::string(3000, 'a'));
   EXPECT_EQ(made, 1);
   get("b");
-  get("c");  // three images and their statistics exceed 10,000 bytes
-  EXPECT_LE(pictures.bytes(), 10'000U);
+  get("c");  // three images and their statistics exceed the limit
+  EXPECT_LE(pictures.bytes(), most);
   EXPECT_EQ(made, 3);
   EXPECT_TRUE(get("a").made_here);
+}
+
+// A cache of many small images must not hold more memory than it counts.
+TEST(Pictures, CountsStatisticsAndTexts) {
+  Picture small = picture("x");
+  small.bytes.shrink_to_fit();
+  const std::size_t bare = held_bytes(small);
+  EXPECT_GE(bare, sizeof(Picture) + 1024);
+  small.warnings.push_back({"/objects/0", std::string(1000, 'x')});
+  small.certificate.terms.push_back({"samples", Bound::unknown(), std::string(1000, 'x')});
+  EXPECT_GE(held_bytes(small), bare + 2000);
+  const RenderResult film{Film(1, 1, FilmStorage::srgb8, {}), {}};
+  EXPECT_GE(held_bytes(film), sizeof(RenderResult) + 1024);
 }
 
 TEST(Pictures, KeepsImagesOfOtherClientsDuringFlood) {
