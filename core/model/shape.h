@@ -16,6 +16,8 @@
 namespace orrery {
 
 class Params;
+struct Tessellation;
+struct TessellationView;
 
 // Surface of one shape at one hit.
 template <class N>
@@ -176,6 +178,12 @@ class ShapeSet {
   virtual ShapeTraits traits() const = 0;
   // Returns the primitive's whole surface, or nullopt if light cannot be sampled from it.
   virtual std::optional<Patch> patch(int /*index*/) const { return std::nullopt; }
+
+  // Adds triangles that are within view.max_error pixels of the surfaces, as far as
+  // Tessellation::kMaxSides permits. Unbounded primitives end where the rest of them covers less than
+  // view.max_error pixels. Primitive `index` of the set has the number `first` + `index`. REQUIRES: the set
+  // is static. Throws Cancelled.
+  virtual void tessellate(const TessellationView& view, int first, Tessellation& out) const = 0;
 
   // Returns a kernel whose primitives are numbered from `first`. The kernel may outlive the set.
   virtual ShapeKernelPtr<float> kernel(float, int first) const = 0;

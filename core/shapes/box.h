@@ -15,6 +15,7 @@ struct Box {
   static constexpr ShapeTraits kTraits = {.convex = true, .closed = true};
 
   static void read(Params& p, std::vector<Box<double>>& out);
+  void tessellate(const TessellationView& view, int primitive, Tessellation& out) const;
 
   Boundsd bounds() const { return Boundsd::of({lo, hi}); }
 

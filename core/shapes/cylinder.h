@@ -20,6 +20,7 @@ struct Cylinder {
   static constexpr ShapeTraits kTraits = {.convex = true, .closed = true};
 
   static void read(Params& p, std::vector<Cylinder<double>>& out);
+  void tessellate(const TessellationView& view, int primitive, Tessellation& out) const;
 
   Boundsd bounds() const {
     if (std::isinf(half_length)) return Boundsd::everything();

@@ -16,6 +16,7 @@ struct Disk {
   static constexpr ShapeTraits kTraits = {.convex = true, .closed = false};
 
   static void read(Params& p, std::vector<Disk<double>>& out);
+  void tessellate(const TessellationView& view, int primitive, Tessellation& out) const;
 
   Boundsd bounds() const { return Boundsd::around(center, round_reach(normal) * radius); }
 

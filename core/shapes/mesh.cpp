@@ -2,6 +2,7 @@
 
 #include "core/base/shorten.h"
 #include "core/meshes/repair.h"
+#include "core/model/tessellation.h"
 #include "core/params/params.h"
 #include "core/shapes/mesh_reader.h"
 #include "core/shapes/mesh_records.h"
@@ -76,6 +77,23 @@ class MeshSet final : public ShapeSet {
   std::optional<Patch> patch(int index) const override {
     return patch_of(table_.corners(static_cast<std::size_t>(index)));
   }
+  void tessellate(const TessellationView&, int first, Tessellation& out) const override {
+    const auto first_vertex = static_cast<std::uint32_t>(out.vertices.size());
+    out.vertices.reserve(out.vertices.size() + table_.positions.size());
+    for (const Vec3d& position : table_.positions) out.add(position);
+    for (const auto& part : table_.parts) {
+      if (!part.smooth) continue;
+      const std::size_t end = part.first_normal + vertices_of(part);
+      for (std::size_t i = part.first_normal; i < end; ++i)
+        out.vertices[first_vertex + part.first_vertex + i - part.first_normal].normal = table_.normals[i];
+    }
+    out.triangles.reserve(out.triangles.size() + table_.triangles.size());
+    for (std::size_t i = 0; i < table_.triangles.size(); ++i) {
+      checkpoint(i);
+      const auto& [a, b, c] = table_.triangles[i];
+      out.add(first + static_cast<int>(i), first_vertex + a, first_vertex + b, first_vertex + c);
+    }
+  }
   ShapeKernelPtr<float> kernel(float, int first) const override { return make<float>(first); }
   ShapeKernelPtr<double> kernel(double, int first) const override { return make<double>(first); }
   ShapeKernelPtr<long double> kernel(long double, int first) const override {
@@ -129,18 +147,21 @@ class MeshSet final : public ShapeSet {
     return false;
   }
 
+  using Part = MeshTable<double>::Part;
+  std::size_t vertices_of(const Part& part) const {
+    const Part* const next = &part + 1;
+    const bool last = next == table_.parts.data() + table_.parts.size();
+    return (last ? table_.positions.size() : next->first_vertex) - part.first_vertex;
+  }
   TriangleMesh mesh_of(std::size_t part) const {
-    const auto end_of = [&](const auto& list, auto begin_of) {
-      return part + 1 < table_.parts.size() ? begin_of(table_.parts[part + 1]) : list.size();
-    };
-    const auto& from = table_.parts[part];
+    const Part& from = table_.parts[part];
     TriangleMesh mesh;
-    copy(table_.positions, from.first_vertex,
-         end_of(table_.positions, [](const auto& p) { return p.first_vertex; }), mesh.positions);
+    copy(table_.positions, from.first_vertex, from.first_vertex + vertices_of(from), mesh.positions);
     if (from.smooth)
       copy(table_.normals, from.first_normal, from.first_normal + mesh.positions.size(), mesh.normals);
     if (from.mapped) copy(table_.uvs, from.first_uv, from.first_uv + mesh.positions.size(), mesh.uvs);
-    copy(table_.triangles, from.first, end_of(table_.triangles, [](const auto& p) { return p.first; }),
+    copy(table_.triangles, from.first,
+         part + 1 < table_.parts.size() ? table_.parts[part + 1].first : table_.triangles.size(),
          mesh.triangles);
     for (auto& triangle : mesh.triangles)
       for (std::uint32_t& vertex : triangle) vertex -= static_cast<std::uint32_t>(from.first_vertex);

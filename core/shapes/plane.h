@@ -14,6 +14,7 @@ struct Plane {
   static constexpr ShapeTraits kTraits = {.convex = true, .closed = false};
 
   static void read(Params& p, std::vector<Plane<double>>& out);
+  void tessellate(const TessellationView& view, int primitive, Tessellation& out) const;
 
   Boundsd bounds() const { return Boundsd::everything(); }
   Vec3d anchor() const { return point; }

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/base/task_scope.h"
 #include "core/shapes/packed_records.h"
 
 // A shape type is one record, `template <class N> struct Sphere`, with
@@ -12,9 +13,11 @@
 //   N distance(const Ray<N>&) const;              the smallest t > 0 of a hit; +infinity or NaN for a miss
 //   Surface<N> surface(const Ray<N>&, const N& t) const;
 //   SurfacePoint<N> parameters(const Ray<N>&, const Vec3<N>& position) const;   of a position on the shape
-//   Vec3d anchor() const;                         if it may be unbounded: see ShapeSet::anchor_magnitude()
-//   std::vector<HullTriangle> hull() const;       if tighter than bounds(): see ShapeKernel
-//   Patch patch() const;                          of a Sphere<double>, if light can be sampled from it;
+//   void tessellate(const TessellationView&, int primitive, Tessellation&) const;   of a Sphere<double>; in
+//   the .cpp Vec3d anchor() const;                         if it may be unbounded: see
+//   ShapeSet::anchor_magnitude() std::vector<HullTriangle> hull() const;       if tighter than bounds(): see
+//   ShapeKernel Patch patch() const;                          of a Sphere<double>, if light can be sampled
+//   from it;
 //                                                 std::optional<Patch> if that depends on the shape
 //   Core, core()                                  if distance() needs only part of it: see packed_records.h
 // and `make_shape_set<Sphere>` as its factory. Formulas are evaluated for scalars and for lanes.
@@ -160,6 +163,12 @@ class PrimitiveSet final : public ShapeSet {
       return record.patch();
     else
       return std::nullopt;
+  }
+  void tessellate(const TessellationView& view, int first, Tessellation& out) const override {
+    for (std::size_t i = 0; i < records_.size(); ++i) {
+      checkpoint(i);
+      records_[i].tessellate(view, first + static_cast<int>(i), out);
+    }
   }
   ShapeKernelPtr<float> kernel(float, int first) const override { return make<float>(first); }
   ShapeKernelPtr<double> kernel(double, int first) const override { return make<double>(first); }

@@ -1,5 +1,6 @@
 #include "core/shapes/rectangle.h"
 
+#include "core/model/tessellation.h"
 #include "core/params/params.h"
 #include "core/shapes/primitive_set.h"
 
@@ -23,6 +24,12 @@ void Rectangle<N>::read(Params& p, std::vector<Rectangle<double>>& out) {
   const Vec3d normal = safe_normalize(cross(safe_normalize(a), safe_normalize(b)));
   out.push_back({corner, a, b, a / (length_a * length_a), b / (length_b * length_b), normal,
                  Boundsd::of({corner, corner + a, corner + b, corner + a + b}).magnitude()});
+}
+
+template <class N>
+void Rectangle<N>::tessellate(const TessellationView&, int primitive, Tessellation& out) const {
+  out.add_quad(primitive, out.add(corner, normal), out.add(corner + a, normal),
+               out.add(corner + a + b, normal), out.add(corner + b, normal));
 }
 
 ShapeType rectangle_type() { return {"rectangle", "A flat rectangle.", make_shape_set<Rectangle>}; }

@@ -14,6 +14,7 @@ struct Rectangle {
   static constexpr ShapeTraits kTraits = {.convex = true, .closed = false};
 
   static void read(Params& p, std::vector<Rectangle<double>>& out);
+  void tessellate(const TessellationView& view, int primitive, Tessellation& out) const;
 
   Boundsd bounds() const { return Boundsd::of({corner, corner + a, corner + b, corner + a + b}); }
   std::vector<HullTriangle> hull() const {

@@ -71,6 +71,7 @@ struct Sphere {
   static constexpr ShapeTraits kTraits = {.convex = true, .closed = true};
 
   static void read(Params& p, std::vector<Sphere<double>>& out);
+  void tessellate(const TessellationView& view, int primitive, Tessellation& out) const;
 
   Boundsd bounds() const { return Boundsd::around(ball.center, Vec3d(ball.radius)); }
 

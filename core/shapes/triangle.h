@@ -17,6 +17,7 @@ struct Triangle {
   static constexpr ShapeTraits kTraits = {.convex = true, .closed = false};
 
   static void read(Params& p, std::vector<Triangle<double>>& out);
+  void tessellate(const TessellationView& view, int primitive, Tessellation& out) const;
 
   Boundsd bounds() const { return corners.bounds(); }
   std::vector<HullTriangle> hull() const { return corners.hull(); }
