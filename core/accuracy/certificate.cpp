@@ -112,6 +112,8 @@ Certificate certify(const Plan& plan, const RenderStats& stats, double doubt) {
   found.space = plan.space;
   found.not_followed = plan.not_followed;
   found.min_provable = min_provable(plan, doubt);
+  if (plan.technique->rasterizes)
+    found.terms.push_back({"triangles", Bound::unknown(), "triangles and interpolation replace surfaces"});
   const bool display = plan.space == Space::display;
   if (display) found.terms.push_back(encoding_term(stats));
   if (stats.error.known())

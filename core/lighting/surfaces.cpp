@@ -28,9 +28,8 @@ void find_footprints(const PathBatch<T>& paths, const LaneGroups& groups, const 
 }  // namespace
 
 template <class T>
-LaneGroups find_surfaces(const Geometry<T>& geometry, const SurfaceFields& fields, const PathBatch<T>& paths,
-                         const LaneGroups& groups, HitBatch<T>& hits, SurfaceBatch<T>& surface,
-                         Vec3Array<T>& radiance) {
+LaneGroups start_surfaces(const Geometry<T>& geometry, const LaneGroups& groups, const HitBatch<T>& hits,
+                          SurfaceBatch<T>& surface, Vec3Array<T>& radiance) {
   using N = Lanes<T>;
   LaneGroups met;
   const Vec3<N> background(geometry.background);
@@ -43,16 +42,38 @@ LaneGroups find_surfaces(const Geometry<T>& geometry, const SurfaceFields& field
     met.add(i);
     find_materials(geometry, hits, i, surface);
   }
-  for (const auto& shapes : geometry.shapes) shapes->surface(paths.rays, hits, met, surface);
+  return met;
+}
+
+template <class T>
+void add_fields(const Geometry<T>& geometry, const SurfaceFields& fields, const PathBatch<T>& paths,
+                const LaneGroups& met, HitBatch<T>& hits, SurfaceBatch<T>& surface) {
   if (fields.parameters)
     for (const auto& shapes : geometry.shapes) shapes->parameters(paths.rays, met, hits, surface);
   if (fields.identity) find_objects(*geometry.scene, met, hits, surface);
   if (fields.footprint) find_footprints(paths, met, hits, surface);
   if (fields.travelled)
     for (const int i : met) surface.travelled.put(i, hits.t.at(i));
+}
+
+template <class T>
+LaneGroups find_surfaces(const Geometry<T>& geometry, const SurfaceFields& fields, const PathBatch<T>& paths,
+                         const LaneGroups& groups, HitBatch<T>& hits, SurfaceBatch<T>& surface,
+                         Vec3Array<T>& radiance) {
+  const LaneGroups met = start_surfaces(geometry, groups, hits, surface, radiance);
+  for (const auto& shapes : geometry.shapes) shapes->surface(paths.rays, hits, met, surface);
+  add_fields(geometry, fields, paths, met, hits, surface);
   return met;
 }
 
+template LaneGroups start_surfaces(const Geometry<float>&, const LaneGroups&, const HitBatch<float>&,
+                                   SurfaceBatch<float>&, Vec3Array<float>&);
+template LaneGroups start_surfaces(const Geometry<double>&, const LaneGroups&, const HitBatch<double>&,
+                                   SurfaceBatch<double>&, Vec3Array<double>&);
+template void add_fields(const Geometry<float>&, const SurfaceFields&, const PathBatch<float>&,
+                         const LaneGroups&, HitBatch<float>&, SurfaceBatch<float>&);
+template void add_fields(const Geometry<double>&, const SurfaceFields&, const PathBatch<double>&,
+                         const LaneGroups&, HitBatch<double>&, SurfaceBatch<double>&);
 template LaneGroups find_surfaces(const Geometry<float>&, const SurfaceFields&, const PathBatch<float>&,
                                   const LaneGroups&, HitBatch<float>&, SurfaceBatch<float>&,
                                   Vec3Array<float>&);

@@ -30,6 +30,15 @@ void find_materials(const Geometry<T>& geometry, const HitBatch<T>& hits, int i,
   for (int lane = i; lane < i + kWidth<T>; ++lane) surface.material[lane] = material(hits.primitive[lane]);
 }
 
+// Sets the materials of every hit in `groups`. Sets `radiance` to the background for rays that missed, else
+// to 0. Returns the registers with a hit.
+template <class T>
+LaneGroups start_surfaces(const Geometry<T>& geometry, const LaneGroups& groups, const HitBatch<T>& hits,
+                          SurfaceBatch<T>& surface, Vec3Array<T>& radiance);
+// Sets the requested optional fields of every hit in `met`. REQUIRES: positions and normals are set.
+template <class T>
+void add_fields(const Geometry<T>& geometry, const SurfaceFields& fields, const PathBatch<T>& paths,
+                const LaneGroups& met, HitBatch<T>& hits, SurfaceBatch<T>& surface);
 // Sets the surface of every hit in `groups`, with the requested `fields`. Sets `radiance` to the background
 // for rays that missed, else to 0. Returns the registers with a surface.
 template <class T>

@@ -45,6 +45,11 @@ inline constexpr std::array<std::string_view, 2> kOnMisses{"best", "fail"};
 enum class View { picture, bound };
 inline constexpr std::array<std::string_view, 2> kViews{"picture", "bound"};
 
+// Interpolation of scan line rendering, and the names of the choices. perspective: linear in the scene.
+// screen: linear in the image.
+enum class Interpolation { perspective, screen };
+inline constexpr std::array<std::string_view, 2> kInterpolations{"perspective", "screen"};
+
 // Values of the render options, one member per option. The table in core/plan/options.cpp defines names,
 // ranges and defaults. An option that is not set is nullopt.
 struct RenderSettings {
@@ -57,9 +62,11 @@ struct RenderSettings {
   std::optional<double> min_contribution;
   std::optional<int> samples;  // per pixel
   std::optional<Filter> filter;
-  std::optional<double> filter_width;    // pixels
-  std::optional<int> reuse;              // maximum number of paths per group
-  std::optional<double> clamp_indirect;  // radiance; 0: no limit
+  std::optional<double> filter_width;        // pixels
+  std::optional<int> reuse;                  // maximum number of paths per group
+  std::optional<double> clamp_indirect;      // radiance; 0: no limit
+  std::optional<double> tessellation_error;  // pixels
+  std::optional<Interpolation> interpolation;
   std::optional<std::string> accelerator;
   std::optional<Precision> precision;
   std::optional<std::uint64_t> seed;

@@ -30,6 +30,9 @@ template <class T>
 class Tracer {
  public:
   virtual ~Tracer() = default;
+  // Called before trace() with the tile and the sample positions of its camera rays. Both must stay valid
+  // during trace(). REQUIRES: World::screen is set.
+  virtual void place(const TileView& /*tile*/, const TileSamples& /*samples*/) {}
   // Traces the camera rays and all rays that they spawn. Inactive rays count as rays that miss everything.
   // `draws` returns the random numbers of the sample. Calls checkpoint(). After an exception, the results are
   // undefined.
@@ -59,6 +62,9 @@ struct TechniqueType {
   // Samples one light source and one direction per vertex. Emitting surfaces and the environment are then
   // light sources, and lenses cause defocus blur.
   bool draws_light = false;
+  // Finds visible surfaces by a z-buffer of triangles instead of camera rays. Needs World::screen. No ray
+  // starts at a surface, and nothing casts shadows.
+  bool rasterizes = false;
   bool interreflects = false;                  // diffuse interreflection replaces ambient light
   std::vector<const char*> not_followed = {};  // light transport missing in every scene
   TracerPtr<float> (*make_float)(const World<float>&, const Plan&);

@@ -12,6 +12,7 @@ template <class T>
 struct ModelGeometry;
 template <class T>
 class LightTree;
+struct Screen;
 
 // Scene geometry in one number type, for one exposure. Immutable once built.
 template <class T>
@@ -43,12 +44,14 @@ struct Geometry {
   Vec3<T> ambient, background;
 };
 
-// Scene geometry in one number type, and the acceleration structure over it. The geometry must outlive the
-// accelerator.
+// Scene geometry in one number type, and the structures that find visible surfaces. The geometry must outlive
+// the accelerator.
 template <class T>
 struct World {
   std::shared_ptr<const Geometry<T>> geometry;
   std::shared_ptr<const Accelerator<T>> accelerator;
+  // Triangles of the scene in the image of one plan. Null unless TechniqueType::rasterizes.
+  std::shared_ptr<const Screen> screen = nullptr;
 };
 
 }  // namespace orrery

@@ -67,6 +67,7 @@ double expected_rays(const Scene& scene, const Plan& plan) {
 }
 
 double ray_weight(const Scene& scene, const Plan& plan) {
+  if (plan.technique->rasterizes) return 1;
   constexpr double kUsualRay_ns = 20;
   const auto primitives = static_cast<double>(scene.primitive_count());
   return std::max(1.0, plan.accelerator->costs.each * primitives / kUsualRay_ns);

@@ -64,9 +64,10 @@ struct RenderOption {
     Member<std::vector<std::string>> member;
     Names (*names)();
   };
-  using Kind = std::variant<Integer<int>, Integer<std::uint64_t>, Number, Flag, Point, Name,
-                            Enumeration<Precision>, Enumeration<Prediction>, Enumeration<Filter>,
-                            Enumeration<Space>, Enumeration<OnMiss>, Enumeration<View>, NameList>;
+  using Kind =
+      std::variant<Integer<int>, Integer<std::uint64_t>, Number, Flag, Point, Name, Enumeration<Precision>,
+                   Enumeration<Prediction>, Enumeration<Filter>, Enumeration<Interpolation>,
+                   Enumeration<Space>, Enumeration<OnMiss>, Enumeration<View>, NameList>;
 
   // Name in JSON and in queries. The command line spells it with hyphens after "--".
   std::string_view key;

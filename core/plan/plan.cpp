@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/accelerators/registry.h"
+#include "core/base/error.h"
 #include "core/cameras/pixel_filter.h"
 #include "core/channels/registry.h"
 #include "core/image/srgb.h"
@@ -62,6 +63,7 @@ class Planner {
         plan_.sample_range = max_component(largest(facts.tree_radiance.most, scene_.ambient));
       leave_out_for_trees();
     }
+    if (plan_.technique->rasterizes) explain_rasterization();
     if (request_.full_model || plan_.technique->draws_light) return plan_;
     choose_lights();
     choose_specular();
@@ -125,6 +127,9 @@ class Planner {
     if (asked == 0) return;
     if (!scene_.motion.within({plan_.time, plan_.time + asked}))
       return decide("shutter", "none", "nothing moves during the exposure");
+    if (plan_.technique->rasterizes)
+      return decide("shutter", "none", std::string(plan_.technique->name) + " shows the moment it opens",
+                    Bound::unknown());
     plan_.shutter = asked;
     const bool all_at_once = plan_.samples == 1 && !plan_.technique->draws_light;
     decide("shutter", "open for " + seconds(asked),
@@ -147,6 +152,10 @@ class Planner {
   void take_camera() {
     plan_.fields |= scene_.facts.materials.fields;
     plan_.camera = scene_.camera;
+    if (plan_.technique->rasterizes && plan_.camera->all_around())
+      throw InputError("/render/technique", std::string(plan_.technique->name) +
+                                                " does not support the camera type " + plan_.camera->type() +
+                                                " (it supports perspective and orthographic)");
     if (auto turned = scene_.camera->with_fov(*plan_.asked.fov_degrees))
       plan_.camera = std::move(turned);
     else if (request_.fov_degrees)
@@ -190,6 +199,10 @@ class Planner {
 
   void choose_accelerator() {
     const std::string& asked = *plan_.asked.accelerator;
+    if (plan_.technique->rasterizes) {
+      plan_.accelerator = find_type(accelerator_types(), "list");
+      return decide("accelerator", "none", "a z-buffer finds the visible triangles");
+    }
     if (asked != "auto") {
       plan_.accelerator = find_type(accelerator_types(), asked);
       return decide("accelerator", asked, "as specified");
@@ -229,10 +242,27 @@ class Planner {
     plan_.constant_half = parallel_light && plan_.camera->parallel();
     if (plan_.constant_half)
       decide("half vector", "computed once", "the directions to viewer and light are constant");
+    if (plan_.technique->rasterizes) return;  // shadows: see explain_rasterization()
     plan_.shadows = !lonely_convex() || scene_.facts.materials.transmits;
     decide("shadows", plan_.shadows ? "traced" : "none",
            plan_.shadows ? "objects may block light"
                          : "the only object is convex and seen from outside: nothing blocks its light");
+  }
+
+  void explain_rasterization() {
+    plan_.shadows = false;
+    decide("surfaces", "triangles",
+           "curved surfaces are approximated to within " + number_text(*plan_.asked.tessellation_error) +
+               " pixels",
+           Bound::unknown());
+    decide(
+        "interpolation",
+        *plan_.asked.interpolation == Interpolation::screen ? "linear in the image" : "linear in the scene",
+        *plan_.asked.interpolation == Interpolation::screen
+            ? "as specified; the incremental form, with perspective distortion"
+            : "perspective-correct");
+    decide("shadows", "none", std::string(plan_.technique->name) + " does not model them; raycast does",
+           Bound::unknown());
   }
 
   // Adds a decision for each scene feature that only the techniques distributed and path model.

@@ -1,8 +1,11 @@
 #include "core/prepare/staged_world.h"
 
 #include "core/base/clock.h"
+#include "core/base/task_scope.h"
+#include "core/model/technique.h"
 #include "core/occlusion/reordered.h"
 #include "core/prepare/occlusion_samples.h"
+#include "core/raster/screen.h"
 
 namespace orrery {
 namespace {
@@ -27,6 +30,13 @@ World<T> staged_world(PreparedScene::Parts& parts, const SettledPlan& settled, d
                       std::stop_token stop) {
   const Plan& plan = *settled;
   const World<T> bare = world_for<T>(parts, *plan.accelerator, plan.exposure(), build_ms, stop);
+  if (plan.technique->rasterizes) {
+    const auto start = Clock::now();
+    const TaskScope scope({TaskScope::current().memory, &stop});
+    const auto screen = make_screen(*parts.scene, plan);
+    build_ms += milliseconds_since(start);
+    return {bare.geometry, bare.accelerator, screen};
+  }
   const PrimitiveList<T>& primitives = bare.geometry->primitives;
   auto asked = plan.reorder ? reordered(bare.accelerator, plan.shutter > 0) : bare.accelerator;
   if (plan.prediction == Prediction::last)

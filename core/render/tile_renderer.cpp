@@ -112,6 +112,7 @@ void TileRenderer<T>::trace_part(const TileView& tile, int sample, PixelFilter::
   const Draws draws(plan_.seed, tile, sample);
   if (places_samples_) place_samples(static_cast<std::uint32_t>(sample), pixel_streams_, part, samples_);
   send_rays(tile, samples_, draws, SampleSet::lens);
+  tracer_->place(tile, samples_);
   tracer_->trace(rays_, draws, into, stats_.counts);
   trace_emission_only(tile, sample, part, into);
 }

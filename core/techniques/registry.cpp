@@ -10,7 +10,10 @@ namespace orrery {
   add(raycast)                 \
   add(whitted)                 \
   add(distributed)             \
-  add(path)
+  add(path)                    \
+  add(flat)                    \
+  add(gouraud)                 \
+  add(phong)
 // clang-format on
 
 #define ORRERY_DECLARE(name) TechniqueType name##_type();

@@ -14,8 +14,14 @@ SpecularTree<T>::SpecularTree(const World<T>& world, const Plan& plan)
 template <class T>
 void SpecularTree<T>::shade(const LaneGroups& groups, const LaneGroups& met) {
   auto& [paths, hits, surface, radiance] = *this->vertices_;
-  const Geometry<T>& geometry = this->geometry_;
   environment_lighting_.add(paths->rays, hits, groups, nullptr, radiance);
+  shade_surfaces(met);
+}
+
+template <class T>
+void SpecularTree<T>::shade_surfaces(const LaneGroups& met) {
+  auto& [paths, hits, surface, radiance] = *this->vertices_;
+  const Geometry<T>& geometry = this->geometry_;
   direct_light_.add(*paths, this->draws(), surface, groups_with(geometry, surface, met, &MaterialTraits::lit),
                     radiance, this->counts());
   add_emission(geometry, surface, met, radiance);
@@ -44,9 +50,14 @@ void SpecularTree<T>::follow(Kind kind, int i, const MaskOf<N>& mask, const Vec3
 
 template <class T>
 void SpecularTree<T>::cut(int i, const MaskOf<N>& mask, const Vec3<N>& weight) {
-  auto& v = *this->vertices_;
-  v.radiance.put(i, mask, v.radiance.at(i) + weight * Vec3<N>(this->geometry_.ambient));
-  this->record_omitted(i, mask, v.paths->throughput.at(i) * weight);
+  add_ambient(i, mask, weight);
+  this->record_omitted(i, mask, this->vertices_->paths->throughput.at(i) * weight);
+}
+
+template <class T>
+void SpecularTree<T>::add_ambient(int i, const MaskOf<N>& mask, const Vec3<N>& weight) {
+  auto& radiance = this->vertices_->radiance;
+  radiance.put(i, mask, radiance.at(i) + weight * Vec3<N>(this->geometry_.ambient));
 }
 
 template class SpecularTree<float>;

@@ -28,6 +28,11 @@ class SpecularTree : public Wavefront<T> {
   void follow(Kind kind, int i, const MaskOf<N>& mask, const Vec3<N>& direction, const Vec3<N>& weight);
   // Adds ambient light in place of untraced rays, and records the rays as omitted.
   void cut(int i, const MaskOf<N>& mask, const Vec3<N>& weight);
+  // Adds ambient light in place of untraced rays.
+  void add_ambient(int i, const MaskOf<N>& mask, const Vec3<N>& weight);
+  void shade(const LaneGroups& groups, const LaneGroups& met) final;
+  // Sets the radiance of the surfaces of `met`.
+  virtual void shade_surfaces(const LaneGroups& met);
   // Returns the lanes of register i whose material is specular.
   MaskOf<N> specular_lanes(int i) const {
     return lanes_with(this->geometry_, this->vertices_->surface, i, &MaterialTraits::mirrors);
@@ -36,8 +41,6 @@ class SpecularTree : public Wavefront<T> {
   SpecularBatch<T> specular_;
 
  private:
-  void shade(const LaneGroups& groups, const LaneGroups& met) final;
-
   DirectLight<T> direct_light_;
   EnvironmentLighting<T> environment_lighting_;
 };

@@ -89,12 +89,18 @@ template <class T>
 void Wavefront<T>::run_slice(const LaneGroups& groups) {
   Vertices& v = *vertices_;
   PathBatch<T>& paths = *v.paths;
-  reset(paths.rays, groups, v.hits);
-  accelerator_.closest(paths.rays, groups, v.hits, counts_->accelerator);
-  const LaneGroups met = find_surfaces(geometry_, plan_.fields, paths, groups, v.hits, v.surface, v.radiance);
+  const LaneGroups met = find_vertices(groups);
   if (paths.depth == 0) record_channels(groups, met);
   shade(groups, met);
   deposit(paths, groups, v.radiance, sums(paths.depth));
+}
+
+template <class T>
+LaneGroups Wavefront<T>::find_vertices(const LaneGroups& groups) {
+  Vertices& v = *vertices_;
+  reset(v.paths->rays, groups, v.hits);
+  accelerator_.closest(v.paths->rays, groups, v.hits, counts_->accelerator);
+  return find_surfaces(geometry_, plan_.fields, *v.paths, groups, v.hits, v.surface, v.radiance);
 }
 
 template <class T>

@@ -35,6 +35,10 @@ class Wavefront : public Tracer<T> {
   // spawn(). `met` are the registers of `groups` with a surface.
   virtual void shade(const LaneGroups& groups, const LaneGroups& met) = 0;
 
+  // Sets the hits and the surfaces of the rays of `groups`. Sets the radiance to the background for rays that
+  // miss everything, else to 0. Returns the registers with a surface.
+  virtual LaneGroups find_vertices(const LaneGroups& groups);
+
   // Called before a batch of camera rays, and after all rays spawned from it.
   virtual void begin() {}
   virtual void finish() {}

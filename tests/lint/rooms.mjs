@@ -19,7 +19,7 @@ export const kLayers = [
     "core/channels",
     "core/occlusion",
   ],
-  ["core/lighting"],
+  ["core/lighting", "core/raster"],
   ["core/reuse"],
   ["core/techniques"],
   ["core/plan"],

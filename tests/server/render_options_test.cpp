@@ -90,9 +90,12 @@ std::string file_of(const std::shared_ptr<const Scene>& scene, const RenderReque
 TEST(RenderOptions, ChangesKeyIfAndOnlyIfPixelsChange) {
   const auto scene = load(revealing_scene());
   const RenderSettings own = resolve(*scene, {});
-  RenderRequest paths;
-  paths.technique = "path";
-  const std::string plain = file_of(scene, {}), plain_paths = file_of(scene, paths);
+  const auto by = [](RenderRequest request, const char* technique) {
+    request.technique = technique;
+    return request;
+  };
+  const std::string plain = file_of(scene, {}), plain_paths = file_of(scene, by({}, "path")),
+                    plain_vertices = file_of(scene, by({}, "gouraud"));
   for (const RenderOption& option : render_options()) {
     if (option.key == "error_metric") continue;  // tested separately below
     const std::vector<RenderRequest> others = std::visit(OtherValues{own}, option.kind);
@@ -103,10 +106,9 @@ TEST(RenderOptions, ChangesKeyIfAndOnlyIfPixelsChange) {
       EXPECT_EQ(etag_of(*scene, request) != etag_of(*scene, {}), option.changes_pixels);
       EXPECT_EQ(canonical_request(*scene, request) != canonical_request(*scene, {}), option.changes_pixels);
       EXPECT_NE(canonical_work(*scene, request), canonical_work(*scene, {}));
-      RenderRequest on_paths = request;
-      if (!request.technique) on_paths.technique = "path";
-      const bool same =
-          file_of(scene, request) == plain && (request.technique || file_of(scene, on_paths) == plain_paths);
+      const bool same = file_of(scene, request) == plain &&
+                        (request.technique || (file_of(scene, by(request, "path")) == plain_paths &&
+                                               file_of(scene, by(request, "gouraud")) == plain_vertices));
       changed = changed || !same;
       EXPECT_TRUE(same || option.changes_pixels);
     }

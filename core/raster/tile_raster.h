@@ -1,0 +1,55 @@
+#pragma once
+
+#include "core/model/batch.h"
+#include "core/model/tile.h"
+#include "core/raster/screen.h"
+
+namespace orrery {
+
+// Z-buffer of one tile. Not thread-safe: each thread needs a separate object.
+class TileRaster {
+ public:
+  // `screen` must outlive this object. `perspective`: weights are linear in the scene, not in the image.
+  TileRaster(const Screen& screen, bool perspective) : screen_(screen), perspective_(perspective) {}
+
+  // Finds the nearest triangle at each sample of the tile. At equal depths, the first triangle wins. A sample
+  // on an edge belongs to the triangle that is below or to the right of the edge (top-left rule), so exactly
+  // one of the triangles that share an edge covers the sample.
+  void draw(const TileView& tile, const TileSamples& samples);
+
+  bool covered(int slot) const { return nearest_[slot] >= 0; }
+  // Returns the number in Tessellation::triangles of the triangle at a sample. REQUIRES: covered(slot).
+  std::uint32_t triangle(int slot) const { return found(slot).triangle; }
+  // Returns the weights of its corners at the sample, whose sum is 1 up to rounding. REQUIRES: covered(slot).
+  Vec3d weights(int slot);
+
+ private:
+  using N = Lanes<double>;
+  // Triangle prepared for the tile: edge i is opposite to corner i. Its function a x + b y + c is 0 on the
+  // edge and positive inside. All numbers are integers.
+  struct Edges {
+    std::array<double, 3> a, b, c;
+    std::array<double, 3> least;  // 0 if samples on the edge are inside, else 1
+    double area;                  // twice the area: the sum of the edge functions
+  };
+  Edges edges_of(const ScreenTriangle& triangle) const;
+  void draw(const ScreenTriangle& triangle, std::int64_t number);
+  const ScreenTriangle& found(int slot) const {
+    return chunk_of(slot).triangles[static_cast<std::uint32_t>(nearest_[slot])];
+  }
+  const Screen::Chunk& chunk_of(int slot) const {
+    return screen_.chunks[static_cast<std::size_t>(nearest_[slot] >> 32)];
+  }
+
+  const Screen& screen_;
+  const bool perspective_;
+  TileView tile_{};
+  Array<double> x_, y_;  // samples, in subpixels from the corner of the tile
+  double reach_ = 0;     // largest distance of a sample from the centre of its pixel, subpixels
+  Array<double> nearness_;
+  Array<std::int64_t> nearest_;  // chunk * 2^32 + triangle of the chunk, or -1
+  Edges edges_{};                // edges of triangle `known_`
+  std::int64_t known_ = -1;      // as in nearest_
+};
+
+}  // namespace orrery
