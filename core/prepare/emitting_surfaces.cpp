@@ -115,7 +115,6 @@ class EmitterList {
 template <class T>
 std::vector<LightBounds> add_emitters(const Scene& scene, const Exposure& exposure, Geometry<T>& geometry) {
   if (!scene.facts.materials.emits) return {};
-  for (const Vec3d& emission : scene.emission) geometry.emission.push_back(Vec3<T>(emission));
   geometry.emitter_of.assign(geometry.material_of.size(), -1);
   return EmitterList<T>(scene, exposure, geometry).find();
 }

@@ -120,6 +120,26 @@ void add_instances(const Scene& scene, const AcceleratorType& inner, const Expos
   }
 }
 
+// Adds all members that do not refer to shapes.
+template <class T>
+void add_lighting(const Scene& scene, Geometry<T>& geometry) {
+  geometry.ambient = Vec3<T>(scene.ambient);
+  geometry.background = Vec3<T>(scene.background);
+  geometry.material_of.assign(scene.material_of.begin(), scene.material_of.end());
+  int first = 0;
+  for (const auto& materials : scene.materials) {
+    const int last = first + materials->size();
+    if (last > first)
+      geometry.materials.push_back({materials->kernel(T(), first), first, last, materials->traits()});
+    first = last;
+  }
+  if (scene.facts.materials.emits)
+    for (const Vec3d& emission : scene.emission) geometry.emission.push_back(Vec3<T>(emission));
+  for (const auto& lights : scene.light_sets)
+    geometry.lights.push_back(lights->size() > 0 ? lights->kernel(T()) : nullptr);
+  if (scene.environment) geometry.environment = scene.environment->kernel(T());
+}
+
 template <class T>
 void add_light_tree(const Scene& scene, const std::vector<LightBounds>& emitters, Geometry<T>& geometry) {
   std::vector<LightBounds> lights;
@@ -144,9 +164,7 @@ std::shared_ptr<const Geometry<T>> make_geometry(std::shared_ptr<const Scene> sc
                                                  const AcceleratorType& inner, const Exposure& exposure,
                                                  const Geometry<T>* before) {
   auto geometry = std::make_shared<Geometry<T>>();
-  geometry->ambient = Vec3<T>(scene->ambient);
-  geometry->background = Vec3<T>(scene->background);
-  geometry->material_of.assign(scene->material_of.begin(), scene->material_of.end());
+  add_lighting(*scene, *geometry);
   geometry->primitives.reserve(scene->material_of.size());
   int number = 0;
   std::vector<ShapeKernelPtr<T>> moving;
@@ -154,17 +172,15 @@ std::shared_ptr<const Geometry<T>> make_geometry(std::shared_ptr<const Scene> sc
              geometry->primitives, number);
   add_instances(*scene, inner, exposure, before, *geometry, moving, number);
   geometry->shapes.insert(geometry->shapes.end(), moving.begin(), moving.end());
-  int first = 0;
-  for (const auto& materials : scene->materials) {
-    const int last = first + materials->size();
-    if (last > first)
-      geometry->materials.push_back({materials->kernel(T(), first), first, last, materials->traits()});
-    first = last;
-  }
-  for (const auto& lights : scene->light_sets)
-    geometry->lights.push_back(lights->size() > 0 ? lights->kernel(T()) : nullptr);
-  if (scene->environment) geometry->environment = scene->environment->kernel(T());
   add_light_tree(*scene, add_emitters(*scene, exposure, *geometry), *geometry);
+  geometry->scene = std::move(scene);
+  return geometry;
+}
+
+template <class T>
+std::shared_ptr<const Geometry<T>> make_lighting(std::shared_ptr<const Scene> scene) {
+  auto geometry = std::make_shared<Geometry<T>>();
+  add_lighting(*scene, *geometry);
   geometry->scene = std::move(scene);
   return geometry;
 }
@@ -183,6 +199,8 @@ AcceleratorFacts facts_of(const World<T>& world) {
   return facts;
 }
 
+template std::shared_ptr<const Geometry<float>> make_lighting(std::shared_ptr<const Scene>);
+template std::shared_ptr<const Geometry<double>> make_lighting(std::shared_ptr<const Scene>);
 template AcceleratorFacts facts_of(const World<float>&);
 template AcceleratorFacts facts_of(const World<double>&);
 template std::shared_ptr<const Geometry<float>> make_geometry(std::shared_ptr<const Scene>,

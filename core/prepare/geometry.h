@@ -13,6 +13,11 @@ std::shared_ptr<const Geometry<T>> make_geometry(std::shared_ptr<const Scene> sc
                                                  const AcceleratorType& inner, const Exposure& exposure = {},
                                                  const Geometry<T>* before = nullptr);
 
+// Returns the parts of the scene geometry that techniques read if they rasterize: materials and lights, but
+// no shapes, primitives, emitters or light tree.
+template <class T>
+std::shared_ptr<const Geometry<T>> make_lighting(std::shared_ptr<const Scene> scene);
+
 // Returns an acceleration structure over the primitives. `before` is the structure for another exposure, or
 // null. The result is `before` refitted if possible, and otherwise a new structure. Throws Cancelled, and the
 // errors of AcceleratorType.

@@ -34,6 +34,19 @@ World<T> world_before(const Moments<T>& moments, const AcceleratorType& type) {
   return {};
 }
 
+// Runs a build on behalf of the scene, and adds its time to `build_ms`.
+void run_build(const PreparedScene::Parts& parts, double& build_ms, const std::stop_token& stop,
+               const std::function<void()>& make) {
+  const auto start = Clock::now();
+  // No time slice, because the owner of the mutex must not yield.
+  const TaskScope scope({TaskScope::current().memory, &stop});
+  if (parts.run_build)
+    parts.run_build(make);
+  else
+    make();
+  build_ms += milliseconds_since(start);
+}
+
 }  // namespace
 
 template <class T>
@@ -45,27 +58,31 @@ World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& type, con
   auto& moment = moments.front();
   World<T>& world = moment.worlds[&type];
   if (world.accelerator) return world;
-  const auto start = Clock::now();
-  const auto make = [&] {
+  run_build(parts, build_ms, stop, [&] {
     const World<T> before = world_before(moments, type);
     auto& geometry = moment.geometries[parts.scene->models.empty() ? nullptr : &type];
     if (!geometry) geometry = make_geometry<T>(parts.scene, type, exposure, before.geometry.get());
     world = {geometry, build_or_refit(type, geometry->primitives, before.accelerator.get())};
-  };
-  // No time slice, because the owner of the mutex must not yield.
-  const TaskScope scope({TaskScope::current().memory, &stop});
-  if (parts.run_build)
-    parts.run_build(make);
-  else
-    make();
-  build_ms += milliseconds_since(start);
+  });
   return world;
+}
+
+template <class T>
+World<T> lighting_for(PreparedScene::Parts& parts, const AcceleratorType& type, double& build_ms,
+                      std::stop_token stop) {
+  const auto lock = lock_unless(parts.mutex, stop);
+  auto& lighting = made_of<T>(parts).lighting;
+  if (!lighting) run_build(parts, build_ms, stop, [&] { lighting = make_lighting<T>(parts.scene); });
+  return {lighting, build(type, lighting->primitives)};
 }
 
 template World<float> world_for(PreparedScene::Parts&, const AcceleratorType&, const Exposure&, double&,
                                 std::stop_token);
 template World<double> world_for(PreparedScene::Parts&, const AcceleratorType&, const Exposure&, double&,
                                  std::stop_token);
+
+template World<float> lighting_for(PreparedScene::Parts&, const AcceleratorType&, double&, std::stop_token);
+template World<double> lighting_for(PreparedScene::Parts&, const AcceleratorType&, double&, std::stop_token);
 
 std::unique_lock<StoppableMutex> lock_unless(StoppableMutex& mutex, const std::stop_token& stop) {
   if (!mutex.lock_unless(stop)) throw Cancelled();

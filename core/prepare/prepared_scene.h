@@ -52,14 +52,16 @@ struct PreparedScene::Parts {
   };
   template <class T>
   struct BuiltData {
-    std::list<Moment<T>> moments;    // at most kMoments, most recently used first
-    std::optional<Decision> chosen;  // accelerator chosen by measurement
-    PredictorPtr<T> network;         // trained for the first plan that needs it
+    std::list<Moment<T>> moments;                 // at most kMoments, most recently used first
+    std::shared_ptr<const Geometry<T>> lighting;  // see make_lighting()
+    std::optional<Decision> chosen;               // accelerator chosen by measurement
+    PredictorPtr<T> network;                      // trained for the first plan that needs it
   };
   std::shared_ptr<const Scene> scene;
   RunBuild run_build;
   StoppableMutex trying;  // guards `chosen` and `network`; held while either is computed
-  StoppableMutex mutex;   // guards `moments`; held during builds, so that each part is built once
+  StoppableMutex
+      mutex;  // guards `moments` and `lighting`; held during builds, so that each part is built once
   BuiltData<float> made_float;
   BuiltData<double> made_double;
 };
@@ -70,6 +72,11 @@ struct PreparedScene::Parts {
 template <class T>
 World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& accelerator, const Exposure& exposure,
                    double& build_ms, std::stop_token stop = {});
+
+// Returns make_lighting() of the scene, with an accelerator without primitives. Otherwise as world_for().
+template <class T>
+World<T> lighting_for(PreparedScene::Parts& parts, const AcceleratorType& accelerator, double& build_ms,
+                      std::stop_token stop = {});
 
 // Locks the mutex. Throws Cancelled if `stop` is requested before the mutex is free.
 std::unique_lock<StoppableMutex> lock_unless(StoppableMutex& mutex, const std::stop_token& stop);

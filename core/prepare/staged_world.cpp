@@ -23,20 +23,28 @@ PredictorPtr<T> network_for(PreparedScene::Parts& parts, const World<T>& world, 
   return network;
 }
 
+// Shapes are needed only for their parameters.
+template <class T>
+World<T> rasterized_world(PreparedScene::Parts& parts, const Plan& plan, double& build_ms,
+                          std::stop_token stop) {
+  World<T> world = plan.fields.parameters
+                       ? world_for<T>(parts, *plan.accelerator, plan.exposure(), build_ms, stop)
+                       : lighting_for<T>(parts, *plan.accelerator, build_ms, stop);
+  const auto start = Clock::now();
+  const TaskScope scope({TaskScope::current().memory, &stop});
+  world.screen = make_screen(*parts.scene, plan);
+  build_ms += milliseconds_since(start);
+  return world;
+}
+
 }  // namespace
 
 template <class T>
 World<T> staged_world(PreparedScene::Parts& parts, const SettledPlan& settled, double& build_ms,
                       std::stop_token stop) {
   const Plan& plan = *settled;
+  if (plan.technique->rasterizes) return rasterized_world<T>(parts, plan, build_ms, stop);
   const World<T> bare = world_for<T>(parts, *plan.accelerator, plan.exposure(), build_ms, stop);
-  if (plan.technique->rasterizes) {
-    const auto start = Clock::now();
-    const TaskScope scope({TaskScope::current().memory, &stop});
-    const auto screen = make_screen(*parts.scene, plan);
-    build_ms += milliseconds_since(start);
-    return {bare.geometry, bare.accelerator, screen};
-  }
   const PrimitiveList<T>& primitives = bare.geometry->primitives;
   auto asked = plan.reorder ? reordered(bare.accelerator, plan.shutter > 0) : bare.accelerator;
   if (plan.prediction == Prediction::last)

@@ -3,9 +3,15 @@
 #include <cmath>
 #include <tuple>
 
+#include "core/base/prefetch.h"
 #include "core/base/task_scope.h"
 
 namespace orrery {
+namespace {
+
+constexpr std::uint32_t kAhead = 8;  // triangles that are prefetched
+
+}  // namespace
 
 void TileRaster::draw(const TileView& tile, const TileSamples& samples) {
   tile_ = tile;
@@ -27,8 +33,11 @@ void TileRaster::draw(const TileView& tile, const TileSamples& samples) {
   for (std::size_t c = 0; c < screen_.chunks.size(); ++c) {
     const Screen::Chunk& chunk = screen_.chunks[c];
     checkpoint();
-    for (std::uint32_t i = chunk.first[number]; i < chunk.first[number + 1]; ++i)
+    const std::uint32_t end = chunk.first[number + 1];
+    for (std::uint32_t i = chunk.first[number]; i < end; ++i) {
+      prefetch_lines(chunk.triangles[chunk.list[std::min(i + kAhead, end - 1)]]);
       draw(chunk.triangles[chunk.list[i]], static_cast<std::int64_t>(c << 32 | chunk.list[i]));
+    }
   }
 }
 
@@ -61,7 +70,8 @@ TileRaster::Edges TileRaster::edges_of(const ScreenTriangle& triangle) const {
   const auto [top, bottom] = pixels(triangle.y, tile_.y0, tile_.height);
   const auto& [a, b, c] = std::tie(edges.a, edges.b, edges.c);
   std::array<double, 3> near;
-  for (std::size_t i = 0; i < 3; ++i) near[i] = triangle.nearness[i] / edges.area;
+  const double inverse = 1 / edges.area;
+  for (std::size_t i = 0; i < 3; ++i) near[i] = triangle.nearness[i] * inverse;
   constexpr int kBlocks = kTileSide / 4;
   for (int row = top / 4; row <= bottom / 4; ++row)
     for (int column = left / 4; column <= right / 4; ++column)

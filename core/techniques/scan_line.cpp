@@ -132,12 +132,13 @@ void ScanLine<T>::use_facet(std::uint32_t number) {
   facet_.primitive = triangle.primitive;
   for (std::size_t k = 0; k < 3; ++k) facet_.positions[k] = surfaces.vertices[triangle.vertices[k]].position;
   const auto& [a, b, c] = facet_.positions;
-  facet_.face = face_normal(a, b, c);
+  bool smooth = shading_ != ShadingPoints::triangles;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3d& normal = surfaces.vertices[triangle.vertices[k]].normal;
-    const bool smooth = shading_ != ShadingPoints::triangles && normal != Vec3d();
-    facet_.normals[k] = smooth ? normal : facet_.face;
+    facet_.normals[k] = surfaces.vertices[triangle.vertices[k]].normal;
+    smooth = smooth && facet_.normals[k] != Vec3d();
   }
+  facet_.face = smooth ? safe_normalize(cross(b - a, c - a)) : face_normal(a, b, c);
+  if (!smooth) facet_.normals.fill(facet_.face);
   const CameraFrame& frame = this->plan_.frame;
   facet_.side = dot(facet_.face, screen_.parallel ? -frame.back : a - frame.eye) > 0 ? -1 : 1;
 }
