@@ -7,6 +7,7 @@
 #include "core/base/task_scope.h"
 #include "core/lighting/light_tree.h"
 #include "core/prepare/emitting_surfaces.h"
+#include "core/raster/screen.h"
 
 namespace orrery {
 namespace {
@@ -187,6 +188,8 @@ std::shared_ptr<const Geometry<T>> make_lighting(std::shared_ptr<const Scene> sc
 
 template <class T>
 AcceleratorFacts facts_of(const World<T>& world) {
+  if (world.screen)
+    return {.bytes = world.screen->bytes(), .references = world.screen->surfaces.triangles.size()};
   AcceleratorFacts facts = world.accelerator->facts();
   int deepest = 0;
   for (const auto& model : world.geometry->models) {

@@ -27,6 +27,7 @@ AcceleratorPtr<T> build_or_refit(const AcceleratorType& type, const PrimitiveLis
 
 // Returns the facts of the scene's structure, including the structures of the models. Bytes and references
 // are totals. The depth is the depth of the scene's structure plus the largest depth of a model's structure.
+// If the technique rasterizes, returns the size of World::screen and its number of triangles.
 template <class T>
 AcceleratorFacts facts_of(const World<T>& world);
 

@@ -194,6 +194,14 @@ class Projector {
 
 }  // namespace
 
+std::size_t Screen::bytes() const {
+  const auto size = [](const auto& list) { return list.size() * sizeof list[0]; };
+  std::size_t sum = size(surfaces.vertices) + size(surfaces.triangles);
+  for (const Chunk& chunk : chunks)
+    sum += size(chunk.triangles) + size(chunk.corners) + size(chunk.first) + size(chunk.list);
+  return sum;
+}
+
 std::shared_ptr<const Screen> make_screen(const Scene& scene, const Plan& plan) {
   auto screen = std::make_shared<Screen>();
   screen->surfaces = tessellate(scene, plan, kMaxScreenTriangles);

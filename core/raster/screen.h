@@ -37,6 +37,9 @@ struct Screen {
   std::vector<Chunk> chunks;
   bool parallel = false;  // whether rays of the camera are parallel
   int tiles_across = 0;
+
+  // Returns the size of the triangles and the lists, in bytes.
+  std::size_t bytes() const;
 };
 
 // Largest number of triangles of a scene.

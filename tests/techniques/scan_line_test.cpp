@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/model/tessellation.h"
 #include "tests/support/pictures.h"
 #include "tests/support/random.h"
 #include "tests/support/shapes.h"
@@ -344,6 +345,13 @@ TEST(ScanLine, ExplainsMissingShadows) {
   ASSERT_NE(shadows, plan.decisions.end());
   EXPECT_EQ(shadows->choice, "none");
   EXPECT_EQ(render(scene, by("phong")).stats.counts.rays.total(), kSide * kSide);
+}
+
+TEST(ScanLine, ReportsNumberOfTriangles) {
+  const Json scene = scene_with(json("{'type': 'box', 'min': [-1, -1, -1], 'max': [1, 1, 1]}"));
+  const AcceleratorFacts facts = render(scene, by("flat")).stats.structure;
+  EXPECT_EQ(facts.references, 12u);
+  EXPECT_GE(facts.bytes, 8 * sizeof(Tessellation::Vertex) + 12 * sizeof(Tessellation::Triangle));
 }
 
 }  // namespace
