@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
+#include <mutex>
 
 #include "core/base/parallel.h"
 
@@ -32,17 +34,20 @@ void ThreadExecutor::for_each(int count, const Step& work) {
   const TaskContext context = TaskScope::current();
   TsanFence to_workers, from_workers;
   std::atomic<int> next{0};
+  std::mutex mutex;
+  std::exception_ptr error;  // guarded by `mutex`
   const auto run_steps = [&](int worker) {
     const TaskScope scope(context);
     try {
       for (int step; (step = next++) < count;) work(step, worker);
     } catch (...) {
       next = count;
-      throw;
+      const std::lock_guard lock(mutex);
+      if (!error) error = std::current_exception();
     }
   };
   to_workers.release();
-  threads_->arena.execute([&] {
+  threads_->arena.execute([&]() ORRERY_UNSEEN {  // may run on a thread of the arena
     tbb::parallel_for(
         tbb::blocked_range<int>(0, std::min(count, threads_->count)),
         [&](const tbb::blocked_range<int>& workers) ORRERY_UNSEEN {
@@ -53,6 +58,7 @@ void ThreadExecutor::for_each(int count, const Step& work) {
         tbb::simple_partitioner());
   });
   from_workers.acquire();
+  if (error) std::rethrow_exception(error);
 }
 
 }  // namespace orrery
