@@ -14,7 +14,9 @@ namespace orrery {
   add(box)                 \
   add(disk)                \
   add(rectangle)           \
-  add(cylinder)
+  add(cylinder)            \
+  add(cone)                \
+  add(torus)
 // clang-format on
 
 #define ORRERY_DECLARE(name) ShapeType name##_type();

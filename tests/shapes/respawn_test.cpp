@@ -39,7 +39,7 @@ class Leaver {
     for (std::size_t i = 0; i < rays_.size(); ++i) {
       const Vec3d normal = safe_normalize(Vec3d(spots_[i].geometric));
       Vec3d direction = random.direction_above(normal);
-      const Vec3d along = direction - normal * dot(direction, normal);
+      const Vec3d along = cross(cross(normal, direction), normal);  // perpendicular to within an ulp
       if (i % 2) direction = safe_normalize(safe_normalize(along) + normal * random.magnitude(kMinTilt, 0.1));
       up.push_back(spots_[i].leaving(Vec3<T>(direction)));
       down.push_back(spots_[i].leaving(Vec3<T>(direction - normal * (2 * dot(direction, normal)))));
@@ -50,7 +50,7 @@ class Leaver {
       const bool closed = shape_.traits(primitive).closed;
       ++tally.rays;
       if (closed && spots_[i].side < 0) continue;  // from inside, a ray may hit another part of the shape
-      tally.self_hits += above[i].primitive == primitive;
+      tally.self_hits += above[i].primitive == primitive && !meets_other_part(up[i], above[i].t);
       if (closed)
         tally.leaks += !below[i].met() && runs_inside(down[i], spots_[i].step);
       else
@@ -65,6 +65,12 @@ class Leaver {
   bool runs_inside(const Ray<T>& ray, T step) const {
     const auto way = exact_.closest(convert_ray<long double>(ray));
     return way.met() && way.t > static_cast<long double>(step);
+  }
+
+  // Returns true if the shape is not convex and an outward ray hits another part of it at about `t`.
+  bool meets_other_part(const Ray<T>& ray, T t) const {
+    return !shape_.traits(0).convex &&
+           exact_.closest(convert_ray<long double>(ray)).t <= 2 * static_cast<long double>(t);
   }
 
   Json scene_;

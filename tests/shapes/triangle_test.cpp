@@ -232,9 +232,9 @@ TEST(Triangle, ComputesExactNormalsOfSlivers) {
   for (int i = 0; i < 1000; ++i) {
     const Vec3d a = whole(random.in_cube(0x1p30)), b = whole(random.in_cube(0x1p30));
     const Vec3d c = b + whole(random.in_cube(8));
-    using Exact = Vec3<long double>;
-    const Exact product = cross(Exact(b - a), Exact(c - b));
-    if (product == Exact()) continue;
+    using ExactVec = Vec3<long double>;
+    const ExactVec product = cross(ExactVec(b - a), ExactVec(c - b));
+    if (product == ExactVec()) continue;
     const Vec3d normal(safe_normalize(product));
     for (const Vec3d& found : {face_normal(a, b, c), face_normal(b, c, a), face_normal(c, a, b)})
       EXPECT_LE(length(found - normal), 1e-15);

@@ -27,7 +27,8 @@ const std::set<std::string> kPoints = {"translate", "eye", "look_at",  "center",
                                        "min",       "max", "position", "corner", "from",  "to"};
 const std::set<std::string> kSides = {"edge_u", "edge_v"};  // vectors with a length
 const std::set<std::string> kPointLists = {"vertices", "positions"};
-const std::set<std::string> kLengths = {"radius", "height", "aperture_radius", "focus_distance"};
+const std::set<std::string> kLengths = {"radius",       "base_radius", "top_radius",      "major_radius",
+                                        "minor_radius", "height",      "aperture_radius", "focus_distance"};
 const std::set<std::string> kDirections = {"up", "axis", "normal", "direction", "direction_to_light"};
 const std::set<std::string> kPerLength = {"intensity_per_metre"};  // colours that scale with lengths
 

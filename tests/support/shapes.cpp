@@ -32,6 +32,17 @@ const std::map<std::string, std::vector<Json>>& all_samples() {
     add("{'type': 'cylinder', 'base': [-0.5, -0.25, 0], 'top': [0.5, 0.5, 0.75], 'radius': 0.25}");
     add("{'type': 'cylinder', 'point': [0, 0, 0], 'axis': [0, 0, 1], 'radius': 0.5}");
     add("{'type': 'cylinder', 'point': [0.25, 0, 0], 'axis': [1, -2, 2], 'radius': 0.75}");
+    add("{'type': 'cone', 'base': [0, -0.5, 0], 'top': [0, 0.75, 0], 'base_radius': 0.75}");
+    add("{'type': 'cone', 'base': [-0.5, -0.25, 0], 'top': [0.5, 0.5, 0.75], 'base_radius': 0.125, "
+        "'top_radius': 0.5}");
+    add("{'type': 'cone', 'base': [0, 0, 0.0625], 'top': [0, 0.0625, 0], 'base_radius': 1, 'top_radius': "
+        "0.25}");
+    add("{'type': 'torus', 'center': [0, 0, 0], 'axis': [0, 0, 1], 'major_radius': 0.75, 'minor_radius': "
+        "0.25}");
+    add("{'type': 'torus', 'center': [0.25, 0, -0.125], 'axis': [1, -2, 2], 'major_radius': 0.5, "
+        "'minor_radius': 0.4375}");
+    add("{'type': 'torus', 'center': [0, 0.125, 0], 'axis': [-1, 1, 0.5], 'major_radius': 0.875, "
+        "'minor_radius': 0.0625}");
     add(R"({'type': 'mesh', 'positions': [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]],
             'indices': [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]]})");
     return map;
