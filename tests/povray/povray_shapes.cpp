@@ -1,3 +1,4 @@
+#include "core/math/hemisphere.h"
 #include "tests/povray/povray_scene.h"
 #include "tests/povray/povray_text.h"
 
@@ -45,6 +46,23 @@ std::string cylinder(const Json& o) {
          text(o.at("radius").get<double>()) + " ";
 }
 
+std::string cone(const Json& o) {
+  return "cone { " + text(vector_of(o, "base")) + ", " + text(o.at("base_radius").get<double>()) + ", " +
+         text(vector_of(o, "top")) + ", " + text(o.value("top_radius", 0.0)) + " ";
+}
+
+// A torus of POV-Ray lies around the y axis. The rows of the matrix are the images of the axes and of the
+// origin.
+std::string torus(const Json& o) {
+  const Vec3d axis = normalize(vector_of(o, "axis"));
+  const Tangents<double> across = tangents_of(axis);
+  std::string rows;
+  for (const Vec3d& row : {across.first, axis, across.second, vector_of(o, "center")})
+    rows += (rows.empty() ? "" : ", ") + text(row.x) + ", " + text(row.y) + ", " + text(row.z);
+  return "torus { " + text(o.at("major_radius").get<double>()) + ", " +
+         text(o.at("minor_radius").get<double>()) + " sturm matrix <" + rows + "> ";
+}
+
 }  // namespace
 
 std::string shape_of(const Json& o) {
@@ -59,6 +77,8 @@ std::string shape_of(const Json& o) {
   if (type == "triangle") return triangle(o);
   if (type == "mesh") return mesh(o);
   if (type == "cylinder") return cylinder(o);
+  if (type == "cone") return cone(o);
+  if (type == "torus") return torus(o);
   throw UnsupportedFeature("cannot export shape of type " + type);
 }
 

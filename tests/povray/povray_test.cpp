@@ -58,6 +58,8 @@ const Case kCases[] = {
     {"corridor", "tests/povray/scenes/corridor.json"},
     {"corridor_of_depth_2", "tests/povray/scenes/corridor.json", depth_request(2)},
     {"solids", "tests/povray/scenes/solids.json"},
+    {"cones", "tests/povray/scenes/cones.json"},
+    {"tori", "tests/povray/scenes/tori.json"},
     {"orthographic", "tests/povray/scenes/orthographic.json"},
 };
 
