@@ -27,11 +27,11 @@ template <class N>
     const N quarter = sqrt(sqrt(x)), sixteenth = sqrt(sqrt(quarter)), rest = sqrt(sqrt(sixteenth));
     return quarter * sixteenth * rest * T(1.2);
   };
-  const auto falls = p < zero;  // between its extrema
+  const auto falls = p < zero;  // between extrema at -+ tops / 2
   // -y is a root of x^3 + p x + |q|, the one of the largest magnitude.
-  N y = select(falls,
-               max_first(N(T(2) * sqrt(select(falls, N(p * T(-1) / T(3)), zero))), above_cbrt(T(4) * size)),
-               min_first(above_cbrt(size), N(size / p)));
+  const N tops = T(2) * sqrt(select(falls, N(-p / T(3)), zero));
+  N y =
+      select(falls, max_first(tops, above_cbrt(T(4) * size)), min_first(above_cbrt(size), N(size / abs(p))));
   auto active = y > zero;
   for (int step = 0; step < kMaxSteps && any(active); ++step) {
     const N change = ((y * y + p) * y - size) / (T(3) * y * y + p);

@@ -75,13 +75,14 @@ struct Tessellation {
   }
 
   // Returns the number of sides of a regular polygon, 6 to kMaxSides, whose sides are within
-  // view.max_error pixels of `pixel` metres of its circumscribed circle. Records the error. A polygon of n
-  // sides is off by 2 r sin^2(pi / 2n), which is less than r (pi / n)^2 / 2.
-  int sides(const TessellationView& view, double radius, double pixel) {
-    const double least = std::sqrt(radius / (2 * view.max_error * pixel)) * std::numbers::pi;
+  // share * view.max_error pixels of `pixel` metres of its circumscribed circle. Records the error, with the
+  // rest of it left to other polygons. A polygon of n sides is off by 2 r sin^2(pi / 2n), which is less than
+  // r (pi / n)^2 / 2.
+  int sides(const TessellationView& view, double radius, double pixel, double share = 1) {
+    const double least = std::sqrt(radius / (2 * share * view.max_error * pixel)) * std::numbers::pi;
     const int count = std::max(6, static_cast<int>(std::ceil(std::min(least, double{kMaxSides}))));
     const double angle = std::numbers::pi / count;
-    error = std::max(error, radius * angle * angle / (2 * pixel));
+    error = std::max(error, radius * angle * angle / (2 * share * pixel));
     return count;
   }
 

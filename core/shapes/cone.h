@@ -16,12 +16,13 @@ struct Cone {
   N radius;              // at the centre
   N half_length;
   N slope;      // growth of the radius per metre along the axis
-  N cosine;     // of the angle between the wall and the axis
+  N cosine;     // cosine of the angle between the wall and the axis
   N magnitude;  // upper bound of the absolute coordinates
 
   static constexpr ShapeTraits kTraits = {.convex = true, .closed = true};
 
   static void read(Params& p, std::vector<Cone<double>>& out);
+  void tessellate(const TessellationView& view, int primitive, Tessellation& out) const;
 
   // A cone is the convex hull of its caps.
   Boundsd bounds() const {
@@ -62,7 +63,7 @@ struct Cone {
     const N along = dot(from, axis);
     const Vec3<N> near_across = from - axis * along;
     const Vec3<N> across =
-        near_across - axis * dot(near_across, axis);  // near the tip, the rest is not small
+        near_across - axis * dot(near_across, axis);  // again: near the tip, what remains is small
     const N from_axis = length(across), to_wall = distance_to_wall(along, from_axis), zero(T(0));
     const auto cap = is_on_cap(along, to_wall) || !(from_axis > zero);
     const N end = select(along > zero, half_length, -half_length), end_side = end / half_length;

@@ -18,6 +18,7 @@ struct Torus {
   static constexpr ShapeTraits kTraits = {.convex = false, .closed = true};
 
   static void read(Params& p, std::vector<Torus<double>>& out);
+  void tessellate(const TessellationView& view, int primitive, Tessellation& out) const;
 
   Boundsd bounds() const { return Boundsd::around(center, round_reach(axis) * major + Vec3d(minor)); }
 

@@ -22,6 +22,7 @@ namespace orrery {
   add(unit_vector)            \
   add(unit_random)            \
   add(accumulation)           \
+  add(torus_quartic)          \
   add(phong_blinn)            \
   add(area_light)             \
   add(leaving_glass)          \

@@ -38,7 +38,7 @@ double largest_error(const Tessellation& surfaces, const Plan& plan, const Depth
   return largest;
 }
 
-TEST(Tessellate, StaysWithinErrorOnSpheresAndCylinders) {
+TEST(Tessellate, StaysWithinErrorOnCurvedShapes) {
   for (const double error : {4.0, 0.25, 0.02})
     for (const double radius : {0.1, 1.0, 3.0}) {
       SCOPED_TRACE(testing::Message() << error << " pixels, radius " << radius);
@@ -54,9 +54,26 @@ TEST(Tessellate, StaysWithinErrorOnSpheresAndCylinders) {
         EXPECT_LE(surfaces.error, error);
         EXPECT_GT(surfaces.error, 0);
       };
+      const double slant = std::hypot(2, 0.5 * radius);
+      const Json cone = {{"type", "cone"},
+                         {"base", {0, -1, 0}},
+                         {"top", {0, 1, 0}},
+                         {"base_radius", radius},
+                         {"top_radius", radius / 2}};
+      const Json torus = {{"type", "torus"},
+                          {"center", {0, 0, 0}},
+                          {"axis", {0, 1, 0}},
+                          {"major_radius", radius},
+                          {"minor_radius", radius * 0.4}};
       check(sphere, [&](const Vec3d& p) { return radius - length(p); });
       check(cylinder, [&](const Vec3d& p) {  // the caps are exact
         return std::abs(p.y) < 1 ? radius - std::hypot(p.x, p.z) : 0;
+      });
+      check(cone, [&](const Vec3d& p) {
+        return std::abs(p.y) < 1 ? (radius * (0.75 - 0.25 * p.y) - std::hypot(p.x, p.z)) * 2 / slant : 0;
+      });
+      check(torus, [&](const Vec3d& p) {
+        return std::abs(radius * 0.4 - std::hypot(std::hypot(p.x, p.z) - radius, p.y));
       });
     }
 }

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/math/hemisphere.h"
+#include "tests/support/covers.h"
 #include "tests/support/exhaustive.h"
 #include "tests/support/random.h"
 #include "tests/support/rays.h"
@@ -114,7 +115,7 @@ Ray<double> ray_touching(Random& random, const ConeSpec& cone) {
   return {point - direction * random.magnitude(0.1, 10), direction};
 }
 
-// Returns a ray parallel to the axis, inside or beside the cone.
+// Returns a ray parallel to the axis, inside the cone or past it.
 Ray<double> ray_along_axis(Random& random, const ConeSpec& cone) {
   const Vec3d axis = cone.axis() * (random.below(2) ? 1 : -1);
   const Vec3d aside = perpendicular(axis) * random.between(0, 1.5 * (cone.base_radius + cone.top_radius));
@@ -146,6 +147,7 @@ long double worst_cone_error(int rays, Ray<double> (*ray_of)(Random&, const Cone
 
 template <class T>
 void check_cone_errors(const char* type) {
+  covers("A40");
   constexpr long double kUnits = 4;  // permitted error
   const int rays = exhaustive() ? 1'000'000 : 20'000;
   const long double near = worst_cone_error<T>(rays, ray_near),

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "core/math/hemisphere.h"
 #include "tests/support/batches.h"
 #include "tests/support/shapes.h"
 
@@ -90,6 +91,35 @@ TEST(Parameters, MapsSphereToLongitudeAndLatitude) {
   EXPECT_NEAR(at({0, 9, 0}).v, 1, 1e-15);
   EXPECT_NEAR(at({0, -9, 0}).v, 0, 1e-15);
   EXPECT_NEAR(at({5, 5, 0}).v, 0.75, 1e-15);
+}
+
+TEST(Parameters, MapsConeToAngleAndHeight) {
+  const Json frustum =
+      json("{'type': 'cone', 'base': [0, 0, 0], 'top': [0, 0, 2], 'base_radius': 2, 'top_radius': 1}");
+  const auto at = [&](const Vec3d& from, const Vec3d& direction) {
+    return parameters_of(scene_with(frustum), {{from, direction}}).at(0);
+  };
+  const auto axes = tangents_of(Vec3d(0, 0, 1));
+  EXPECT_NEAR(at(axes.first * 5 + Vec3d(0, 0, 0.5), -axes.first).u, 0, 1e-15);
+  EXPECT_NEAR(at(axes.second * 5 + Vec3d(0, 0, 0.5), -axes.second).u, 0.25, 1e-15);
+  EXPECT_NEAR(at({5, 0, 0.5}, {-1, 0, 0}).v, 0.25, 1e-15);
+  EXPECT_NEAR(at({0.25, 0, 5}, {0, 0, -1}).v, 0.25, 1e-15) << "top cap";
+  EXPECT_NEAR(at({0.5, 0, -5}, {0, 0, 1}).v, 0.25, 1e-15) << "base";
+}
+
+TEST(Parameters, MapsTorusToTwoAngles) {
+  const Json ring = json(
+      "{'type': 'torus', 'center': [0, 0, 0], 'axis': [0, 0, 1], 'major_radius': 2, 'minor_radius': 0.5}");
+  const auto at = [&](const Vec3d& from, const Vec3d& direction) {
+    return parameters_of(scene_with(ring), {{from, direction}}).at(0);
+  };
+  const auto axes = tangents_of(Vec3d(0, 0, 1));
+  EXPECT_NEAR(at(axes.first * 5, -axes.first).u, 0, 1e-15);
+  EXPECT_NEAR(at(axes.second * 5, -axes.second).u, 0.25, 1e-15);
+  EXPECT_NEAR(at({5, 0, 0}, {-1, 0, 0}).v, 0, 1e-15) << "outer equator";
+  EXPECT_NEAR(at({2, 0, 5}, {0, 0, -1}).v, 0.25, 1e-15) << "top";
+  EXPECT_NEAR(at({0, 0, 0}, {1, 0, 0}).v, 0.5, 1e-15) << "inner equator";
+  EXPECT_NEAR(at({2, 0, -5}, {0, 0, 1}).v, 0.75, 1e-15) << "bottom";
 }
 
 TEST(Parameters, UsesTextureCoordinatesOfMesh) {

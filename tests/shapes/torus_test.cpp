@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/math/hemisphere.h"
+#include "tests/support/covers.h"
 #include "tests/support/exhaustive.h"
 #include "tests/support/random.h"
 #include "tests/support/rays.h"
@@ -172,6 +173,7 @@ constexpr Long kUnits = 4;  // permitted error
 
 template <class T>
 void check_errors(const char* type) {
+  covers("A39");
   const Long random = worst_error<T>(exhaustive() ? 1'000'000 : 20'000, 1, random_ray);
   const Long tangent = worst_error<T>(exhaustive() ? 100'000 : 20'000, 2, tangent_ray);
   std::printf("torus in %s, rounding units: random rays %.3Lf, tangent rays %.3Lf\n", type, random, tangent);
