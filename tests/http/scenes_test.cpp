@@ -108,7 +108,7 @@ TEST_F(Scenes, AllowsRemovalByPostersOnly) {
 }
 
 TEST(SceneStore, EvictsLeastRecentlyUsedScenes) {
-  Daemon daemon({"--scene-cache-bytes", "20000"});
+  Daemon daemon({"--scene-cache-bytes", "40000"});
   httplib::Client client = daemon.client();
   const auto post = [&](const char* title) {
     const auto result = client.Post("/v1/scenes", small_scene({{"title", title}}).dump(), "application/json");

@@ -12,7 +12,7 @@
 namespace orrery::test {
 namespace {
 
-constexpr std::size_t kEnough = 1'000'000;  // triangles
+constexpr std::size_t kEnough = 8'000'000;  // triangles
 
 RenderRequest within(double error) {
   RenderRequest request = size(400, 300);
@@ -63,8 +63,8 @@ TEST(Tessellate, StaysWithinErrorOnCurvedShapes) {
       const Json torus = {{"type", "torus"},
                           {"center", {0, 0, 0}},
                           {"axis", {0, 1, 0}},
-                          {"major_radius", radius},
-                          {"minor_radius", radius * 0.4}};
+                          {"major_radius", radius * 0.7},
+                          {"minor_radius", radius * 0.3}};
       check(sphere, [&](const Vec3d& p) { return radius - length(p); });
       check(cylinder, [&](const Vec3d& p) {  // the caps are exact
         return std::abs(p.y) < 1 ? radius - std::hypot(p.x, p.z) : 0;
@@ -73,7 +73,7 @@ TEST(Tessellate, StaysWithinErrorOnCurvedShapes) {
         return std::abs(p.y) < 1 ? (radius * (0.75 - 0.25 * p.y) - std::hypot(p.x, p.z)) * 2 / slant : 0;
       });
       check(torus, [&](const Vec3d& p) {
-        return std::abs(radius * 0.4 - std::hypot(std::hypot(p.x, p.z) - radius, p.y));
+        return std::abs(radius * 0.3 - std::hypot(std::hypot(p.x, p.z) - radius * 0.7, p.y));
       });
     }
 }
