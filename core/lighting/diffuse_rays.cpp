@@ -47,6 +47,10 @@ void DiffuseRays<T>::add(const PathBatch<T>& paths, const HitBatch<T>& hits, con
   }
   light_.add_environment(rays_, hits_, drawn, found_);
   light_.add_emission(rays_, hits_, surface_, drawn, found_);
+  if (atmosphere_) {
+    atmosphere_->find(rays_.rays, rays_.depth, hits_, drawn);
+    for (const int i : drawn) found_.put(i, found_.at(i) * atmosphere_->share(i));
+  }
   for (const int i : drawn)
     radiance.put(i, rays_.rays.t_max.at(i) > N(T(0)), radiance.at(i) + drawn_.weight.at(i) * found_.at(i));
 }

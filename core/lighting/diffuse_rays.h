@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/lighting/atmosphere_stage.h"
 #include "core/lighting/sampled_light.h"
 
 namespace orrery {
@@ -13,7 +14,9 @@ class DiffuseRays {
   // All arguments must outlive this object.
   DiffuseRays(const Geometry<T>& geometry, const Accelerator<T>& accelerator, const Plan& plan,
               SampledLight<T>& light)
-      : geometry_(geometry), accelerator_(accelerator), plan_(plan), light_(light) {}
+      : geometry_(geometry), accelerator_(accelerator), plan_(plan), light_(light) {
+    if (geometry.atmosphere) atmosphere_ = std::make_unique<AtmosphereStage<T>>(geometry, plan);
+  }
 
   // Adds the light that the surfaces of `met` reflect to `radiance`, and the rays to `counts`.
   void add(const PathBatch<T>& paths, const HitBatch<T>& hits, const PathDraws<T>& draws,
@@ -30,6 +33,7 @@ class DiffuseRays {
   const Accelerator<T>& accelerator_;
   const Plan& plan_;
   SampledLight<T>& light_;
+  std::unique_ptr<AtmosphereStage<T>> atmosphere_;  // null if the scene has no atmosphere
   ScatterBatch<T> drawn_;
   PathBatch<T> rays_;  // the ray of a surface point has the same lane
   HitBatch<T> hits_;

@@ -39,6 +39,7 @@ LaneGroups ShadowedLight<T>::find(const PathBatch<T>& paths, const SurfaceBatch<
     counts.rays.shadow[static_cast<std::size_t>(paths.depth)] += active_rays(shadow, reached);
     accelerator_.occlude(shadow, reached, counts.accelerator);
   }
+  if (geometry_.atmosphere) geometry_.atmosphere->transmit_light(shadow.t_max, reached, light.incident);
   return reached;
 }
 

@@ -89,6 +89,13 @@ void add_instances(const Scene& scene, SceneFacts& facts) {
   }
 }
 
+void add_atmosphere(const Scene& scene, SceneFacts& facts) {
+  if (!scene.atmosphere) return;
+  const RoundingLimit limit = scene.atmosphere->rounding();
+  if (limit.epsilon < facts.rounding.epsilon)
+    facts.rounding = {limit.epsilon, "/atmosphere: " + limit.reason};
+}
+
 void add_lights(const Scene& scene, SceneFacts& facts) {
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const LightPlace place = scene.lights[i];
@@ -146,6 +153,7 @@ SceneFacts gather_facts(const Scene& scene) {
     facts.smallest_feature = {own.smallest.value, pointer_to_object(scene, own.smallest.primitive)};
   add_instances(scene, facts);
   add_lights(scene, facts);
+  add_atmosphere(scene, facts);
   const std::vector<std::int32_t> first_user = find_first_users(scene);
   add_materials(scene, first_user, facts);
   std::vector<bool> used;

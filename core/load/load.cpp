@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 
+#include "core/atmospheres/registry.h"
 #include "core/base/hash.h"
 #include "core/base/shorten.h"
 #include "core/base/task_scope.h"
@@ -185,6 +186,13 @@ class SceneReader {
                       [&](Params& e) { read_environment(e); });
     if (p.has("background") && p.has("environment"))
       p.fail("background", "cannot be used with an environment");
+    p.object_if_given("atmosphere", "Changes of light on its way to the camera.",
+                      [&](Params& a) { read_atmosphere(a); });
+    if (scene_->atmosphere && scene_->atmosphere->hides_background())
+      for (const char* hidden : {"background", "environment"})
+        if (p.has(hidden))
+          p.fail(hidden, std::string("cannot be used with ") + scene_->atmosphere->type() +
+                             ", whose colour rays that leave the scene receive");
     p.each_named("materials", "Materials by name.", {},
                  [&](const std::string& name, Params& m) { read_material(name, m); });
     p.each("lights", "Light sources.", {0, kMaxLights}, [&](Params& l) { read_light(l); });
@@ -254,6 +262,13 @@ class SceneReader {
       scene_->background = *constant;
     else
       scene_->environment = environment;
+  }
+
+  void read_atmosphere(Params& p) {
+    const auto type = p.pick("type", "Atmosphere type.", choices_of(atmosphere_types()));
+    if (!type) return;
+    scene_->atmosphere = atmosphere_types()[*type].read(p);
+    if (scene_->atmosphere->hides_background()) scene_->background = scene_->atmosphere->color();
   }
 
   void read_light(Params& p) {

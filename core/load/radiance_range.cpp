@@ -81,6 +81,12 @@ void find_radiance_ranges(const Scene& scene, const std::vector<bool>& used, Sce
       paths = largest(paths, interreflected(own, limits.albedo));
       distributed = largest(distributed, interreflected(own + ambient, limits.albedo));
     }
+  if (scene.atmosphere) {  // blends radiance with its colour
+    const Vec3d color = scene.atmosphere->color();
+    tree = largest(tree, color);
+    distributed = largest(distributed, color);
+    paths = largest(paths, color);
+  }
   facts.tree_radiance = {Vec3d(0), tree};
   facts.distributed_radiance = {Vec3d(0), distributed};
   facts.path_radiance = {Vec3d(0), paths};

@@ -10,6 +10,7 @@
 
 #include "core/math/affine.h"
 #include "core/math/keyframes.h"
+#include "core/model/atmosphere.h"
 #include "core/model/camera.h"
 #include "core/model/environment.h"
 #include "core/model/light.h"
@@ -137,6 +138,7 @@ struct Scene {
   RenderSettings render;  // options that a scene may set; nullopt: default of the technique
   Vec3d ambient, background;
   std::shared_ptr<const Environment> environment;  // replaces the background, which is then 0; may be null
+  std::shared_ptr<const Atmosphere> atmosphere;    // may be null
   std::vector<std::unique_ptr<ShapeSet>> shapes;
   std::vector<std::unique_ptr<MaterialSet>> materials;
   std::vector<Vec3d> emission;  // per material: radiance emitted on both sides

@@ -64,6 +64,11 @@ class Planner {
       leave_out_for_trees();
     }
     if (plan_.technique->rasterizes) explain_rasterization();
+    if (scene_.atmosphere)
+      decide("atmosphere", scene_.atmosphere->type(),
+             scene_.atmosphere->hides_background()
+                 ? "attenuates light along every ray outside objects; its colour replaces the background"
+                 : "fades objects with their depth; the background keeps its radiance");
     if (request_.full_model || plan_.technique->draws_light) return plan_;
     choose_lights();
     choose_specular();
@@ -308,13 +313,15 @@ class Planner {
   }
 
   void choose_reuse() {
-    const bool shares = plan_.max_depth >= 2 && scene_.facts.materials.lit && plan_.shutter == 0;
+    const bool shares =
+        plan_.max_depth >= 2 && scene_.facts.materials.lit && plan_.shutter == 0 && !scene_.atmosphere;
     plan_.reuse = shares ? static_cast<int>(std::bit_floor(static_cast<unsigned>(*plan_.asked.reuse)))
                          : 1;  // a power of two, because it must divide the pixels of a tile
     decide("path reuse", plan_.reuse > 1 ? "groups of " + std::to_string(plan_.reuse) : "none",
            plan_.reuse > 1     ? "connections to vertices of other paths cost less than new paths"
            : shares            ? "as specified"
            : plan_.shutter > 0 ? "paths at different times see different geometry"
+           : scene_.atmosphere ? "the atmosphere attenuates each connection differently"
                                : "no path has a second vertex that receives light");
   }
 

@@ -138,6 +138,7 @@ void add_lighting(const Scene& scene, Geometry<T>& geometry) {
     for (const Vec3d& emission : scene.emission) geometry.emission.push_back(Vec3<T>(emission));
   for (const auto& lights : scene.light_sets)
     geometry.lights.push_back(lights->size() > 0 ? lights->kernel(T()) : nullptr);
+  if (scene.atmosphere) geometry.atmosphere = scene.atmosphere->kernel(T());
   if (scene.environment) geometry.environment = scene.environment->kernel(T());
 }
 

@@ -31,12 +31,14 @@ void PathTracer<T>::trace_emission_only(const RayBatch<T>& camera_rays, T share,
   counts.rays.camera += active_rays(camera_rays, all);
   reset(camera_rays, all, v.hits);
   this->accelerator_.closest(camera_rays, all, v.hits, counts.accelerator);
+  if (this->atmosphere_) this->atmosphere_->find(camera_rays, 0, v.hits, all);
   for (const int i : all) {
     const auto missed =
         mask_cast<N>(load_index<T>(v.hits.primitive, i) == IndexLanes<T>(IndexOf<T>{kNoPrimitive}));
     find_materials(this->geometry_, v.hits, i, v.surface);
     Vec3<N> seen;
     if (!this->geometry_.emission.empty()) seen = emission_at(this->geometry_, v.surface, i);
+    if (this->atmosphere_) seen = seen * this->atmosphere_->share(i);
     const Vec3<N> background(this->geometry_.background);
     out.radiance.put(i, out.radiance.at(i) + select(missed, background, seen) * N(share));
   }

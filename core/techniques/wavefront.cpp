@@ -11,7 +11,8 @@ Wavefront<T>::Wavefront(const World<T>& world, const Plan& plan)
     : geometry_(*world.geometry),
       accelerator_(*world.accelerator),
       plan_(plan),
-      vertices_(std::make_unique<Vertices>()) {}
+      vertices_(std::make_unique<Vertices>()),
+      atmosphere_(geometry_.atmosphere ? std::make_unique<AtmosphereStage<T>>(geometry_, plan_) : nullptr) {}
 
 template <class T>
 void Wavefront<T>::trace(const RayBatch<T>& camera_rays, const Draws& draws, TraceResult<T>& out,
@@ -91,7 +92,9 @@ void Wavefront<T>::run_slice(const LaneGroups& groups) {
   PathBatch<T>& paths = *v.paths;
   const LaneGroups met = find_vertices(groups);
   if (paths.depth == 0) record_channels(groups, met);
+  if (atmosphere_) atmosphere_->enter(v.hits, v.surface, groups, met, paths);
   shade(groups, met);
+  if (atmosphere_) atmosphere_->leave(groups, paths, v.radiance);
   deposit(paths, groups, v.radiance, sums(paths.depth));
 }
 

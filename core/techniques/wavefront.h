@@ -2,11 +2,12 @@
 
 #include <vector>
 
+#include "core/lighting/atmosphere_stage.h"
 #include "core/model/path.h"
 #include "core/model/technique.h"
 
 // Main loop of all techniques. Each batch of rays passes as a whole through the stages
-//   closest hit -> surface -> shading (by the technique) -> deposit
+//   closest hit -> surface -> atmosphere -> shading (by the technique) -> deposit
 // and the rays spawned by shading form the next batches. There is no recursion: batches wait on a stack, at
 // most two per depth, so memory is bounded for every scene. The rays of a batch, and therefore the order of
 // sums, depend only on the scene and the plan, not on SIMD width, Plan::slice or threads.
@@ -68,6 +69,7 @@ class Wavefront : public Tracer<T> {
   const Accelerator<T>& accelerator_;
   const Plan& plan_;
   std::unique_ptr<Vertices> vertices_;
+  std::unique_ptr<AtmosphereStage<T>> atmosphere_;  // null if the scene has no atmosphere
 
  private:
   void start(const RayBatch<T>& camera_rays);

@@ -15,6 +15,7 @@ export const kLayers = [
     "core/materials",
     "core/lights",
     "core/environments",
+    "core/atmospheres",
     "core/accelerators",
     "core/channels",
     "core/occlusion",

@@ -37,6 +37,11 @@ std::string settings_of(const Json& scene, const PovrayOptions& options) {
          "\n}\nbackground { rgb " + text(background) + " }\n";
 }
 
+std::string fog_of(const Json& atmosphere, double exposure) {
+  return "fog { fog_type 1 distance " + text(atmosphere.at("mean_free_path").get<double>()) + " color rgb " +
+         text(vector_of(atmosphere, "color") * exposure) + " }\n";
+}
+
 // In Orrery, glass casts the shadow of an opaque body. In POV-Ray, light passes straight through glass. The
 // export therefore disables the shadow of glass and adds an invisible black body that casts it.
 std::string object_of(const Json& object, const povray::Material& material) {
@@ -50,6 +55,7 @@ std::string object_of(const Json& object, const povray::Material& material) {
 
 std::string povray_scene(const Json& scene, const PovrayOptions& options) {
   std::string out = settings_of(scene, options) + camera_of(scene.at("camera"), options.aspect);
+  if (scene.contains("atmosphere")) out += fog_of(scene.at("atmosphere"), options.exposure);
   for (const Json& light : scene.value("lights", Json::array()))
     out += povray::light_of(light, options.exposure);
   std::map<std::string, povray::Material> materials;

@@ -60,6 +60,7 @@ const Case kCases[] = {
     {"solids", "tests/povray/scenes/solids.json"},
     {"cones", "tests/povray/scenes/cones.json"},
     {"tori", "tests/povray/scenes/tori.json"},
+    {"fog", "tests/povray/scenes/fog.json"},
     {"orthographic", "tests/povray/scenes/orthographic.json"},
 };
 

@@ -28,7 +28,8 @@ const std::set<std::string> kPoints = {"translate", "eye", "look_at",  "center",
 const std::set<std::string> kSides = {"edge_u", "edge_v"};  // vectors with a length
 const std::set<std::string> kPointLists = {"vertices", "positions"};
 const std::set<std::string> kLengths = {"radius",       "base_radius", "top_radius",      "major_radius",
-                                        "minor_radius", "height",      "aperture_radius", "focus_distance"};
+                                        "minor_radius", "height",      "aperture_radius", "focus_distance",
+                                        "front",        "back",        "mean_free_path"};
 const std::set<std::string> kDirections = {"up", "axis", "normal", "direction", "direction_to_light"};
 const std::set<std::string> kPerLength = {"intensity_per_metre"};  // colours that scale with lengths
 
@@ -45,7 +46,8 @@ void change_members(Json& object, const Change& change) {
 
 // Calls `change` for the members of the camera, the objects, the lights and the instances of a scene.
 void change_places(Json& scene, const Change& change) {
-  change_members(scene["camera"], change);
+  for (const char* part : {"camera", "atmosphere"})
+    if (scene.contains(part)) change_members(scene[part], change);
   for (const char* list : {"objects", "lights", "instances"})
     if (scene.contains(list))
       for (Json& entry : scene[list]) change_members(entry, change);
