@@ -10,6 +10,7 @@ import { attachControls, step, ZOOM_STEP } from "./controls.js";
 import { Editor } from "./editor.js";
 import { Gallery } from "./gallery.js";
 import { attachHint } from "./hint.js";
+import { attachHistory } from "./history.js";
 import { Hud } from "./hud.js";
 import { DEFAULT_VIEW, parseHash } from "./link.js";
 import { attachMessages } from "./messages.js";
@@ -265,6 +266,7 @@ const editor = new Editor(
   postScene,
 );
 attachControls(stage, moves);
+attachHistory($("show-history"), $("history"), store, currentPicture);
 attachHint($("hint"));
 attachCurl($("curl"), currentPicture, announce);
 const refreshDownload = attachDownload($("download"), currentPicture, fail);

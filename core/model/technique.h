@@ -57,6 +57,7 @@ using TracerPtr = std::unique_ptr<Tracer<T>>;
 struct TechniqueType {
   const char* name;
   const char* summary;
+  const char* origin;           // author and year of the publication
   int max_depth;                // default; a request or a scene may set another value
   bool secondary_rays = false;  // follows mirrored and refracted rays
   // Samples one light source and one direction per vertex. Emitting surfaces and the environment are then

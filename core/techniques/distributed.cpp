@@ -20,6 +20,7 @@ TechniqueType distributed_type() {
   return {
       .name = "distributed",
       .summary = "Distributed ray tracing: soft shadows, gloss, translucency, lens, motion blur (Cook 1984).",
+      .origin = "Cook 1984",
       .max_depth = 6,
       .secondary_rays = true,
       .draws_light = true,

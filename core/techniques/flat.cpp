@@ -14,6 +14,7 @@ class Flat final : public ScanLine<T> {
 TechniqueType flat_type() {
   return {.name = "flat",
           .summary = "Scan line: one colour per triangle, without shadows.",
+          .origin = "Bouknight 1970",
           .max_depth = 5,
           .rasterizes = true,
           .not_followed = {"shadows", "reflections", "refractions", "interreflection", "caustics"},

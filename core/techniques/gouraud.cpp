@@ -14,6 +14,7 @@ class Gouraud final : public ScanLine<T> {
 TechniqueType gouraud_type() {
   return {.name = "gouraud",
           .summary = "Scan line: colours of vertices, interpolated, without shadows (Gouraud 1971).",
+          .origin = "Gouraud 1971",
           .max_depth = 5,
           .rasterizes = true,
           .not_followed = {"shadows", "reflections", "refractions", "interreflection", "caustics"},

@@ -17,6 +17,7 @@ class Path final : public PathTracer<T> {
 TechniqueType path_type() {
   return {.name = "path",
           .summary = "Path tracing: global illumination along random paths (Kajiya 1986).",
+          .origin = "Kajiya 1986",
           .max_depth = 9,
           .secondary_rays = true,
           .draws_light = true,

@@ -15,6 +15,7 @@ TechniqueType phong_type() {
   return {.name = "phong",
           .summary =
               "Scan line: normals of vertices, interpolated and lit per pixel, without shadows (Phong 1975).",
+          .origin = "Phong 1975",
           .max_depth = 5,
           .rasterizes = true,
           .not_followed = {"shadows", "reflections", "refractions", "interreflection", "caustics"},

@@ -26,6 +26,7 @@ class Raycast final : public SpecularTree<T> {
 TechniqueType raycast_type() {
   return {.name = "raycast",
           .summary = "Ray casting: camera and shadow rays only (Appel 1968).",
+          .origin = "Appel 1968",
           .max_depth = 5,
           .not_followed = {"reflections", "refractions", "soft shadows", "interreflection", "caustics"},
           .make_float = make_tracer_of<Raycast, float>,

@@ -33,6 +33,7 @@ class Whitted final : public SpecularTree<T> {
 TechniqueType whitted_type() {
   return {.name = "whitted",
           .summary = "Ray casting plus reflected and refracted rays (Whitted 1980).",
+          .origin = "Whitted 1980",
           .max_depth = 5,
           .secondary_rays = true,
           .not_followed = {"soft shadows", "interreflection", "caustics"},

@@ -32,6 +32,16 @@ ordered_json channels() {
   return entries;
 }
 
+ordered_json techniques() {
+  ordered_json entries = ordered_json::array();
+  for (const TechniqueType& technique : technique_types())
+    entries.push_back({{"type", technique.name},
+                       {"summary", technique.summary},
+                       {"origin", technique.origin},
+                       {"missing", technique.not_followed}});
+  return entries;
+}
+
 ordered_json samples() {
   constexpr std::string_view kFolder = "scenes/", kEnding = ".json";
   ordered_json samples = ordered_json::array();
@@ -59,7 +69,7 @@ ordered_json catalog_json() {
           {"lights", entries_of(light_types())},
           {"cameras", entries_of(camera_types())},
           {"channels", channels()},
-          {"techniques", entries_of(technique_types())},
+          {"techniques", techniques()},
           {"accelerators", entries_of(accelerator_types())},
           {"defaults", options_json(default_settings())}};
 }

@@ -23,6 +23,7 @@ Command add_token(CLI::App& root);
 Command add_check(CLI::App& root);
 Command add_explain(CLI::App& root);
 Command add_chart(CLI::App& root);
+Command add_history(CLI::App& root);
 Command add_audit(CLI::App& root);
 Command add_catalog(CLI::App& root);
 Command add_schema(CLI::App& root);
