@@ -39,7 +39,7 @@ struct Geometry {
   // Contains the lights of the scene, then the emitters. Null if there are none.
   std::shared_ptr<const LightTree<T>> light_tree;
   AtmosphereKernelPtr<T> atmosphere;  // Scene::atmosphere; null if there is none
-  LightKernelPtr<T> environment;  // its light 0 is Scene::environment; null if there is none
+  LightKernelPtr<T> environment;      // its light 0 is Scene::environment; null if there is none
   std::vector<IndexOf<T>> material_of;
   PrimitiveList<T> primitives;
   Vec3<T> ambient, background;

@@ -30,7 +30,8 @@ void ScanLine<T>::begin() {
 template <class T>
 LaneGroups ScanLine<T>::find_vertices(const LaneGroups& groups) {
   auto& v = *this->vertices_;
-  const bool needs_surfaces = shading_ == ShadingPoints::pixels || !this->plan_.channels.empty();
+  const bool needs_surfaces =
+      shading_ == ShadingPoints::pixels || !this->plan_.channels.empty() || this->atmosphere_;
   reset(v.paths->rays, groups, v.hits);
   for (const int i : groups)
     for (int slot = i; slot < i + kWidth<T>; ++slot) {
@@ -154,8 +155,12 @@ void ScanLine<T>::put_surface(int i, const Weights& weights, const Ray<T>& ray) 
   const Vec3d normal = size > 0.001 ? sum / size : facet_.face;  // otherwise the normals nearly cancel
   const Vec3<T> at(mix(facet_.positions));
   surface.position.set(i, at);
-  surface.geometric.set(i, Vec3<T>(facet_.face * facet_.side));
-  surface.normal.set(i, Vec3<T>(normal * facet_.side));
+  // Gouraud and Phong evaluate the interpolated normal only. The facing of the flat triangle has no effect,
+  // unless the interpolated normal faces away from the viewer.
+  const Vec3d seen = normal * facet_.side;
+  const bool faces_viewer = dot(seen, Vec3d(ray.direction)) < 0;
+  surface.geometric.set(i, Vec3<T>(faces_viewer ? seen : facet_.face * facet_.side));
+  surface.normal.set(i, Vec3<T>(seen));
   surface.side[i] = static_cast<T>(facet_.side);
   surface.step[i] = 0;  // no ray starts at the surface
   hits.t[i] = dot(at - ray.origin, ray.direction);

@@ -309,6 +309,7 @@ TEST(ScanLine, RendersEverySampleScene) {
         RenderRequest request = by(by_technique, 48);
         request.samples = 1;
         request.shutter = 0;
+        request.tessellation_error = 0.25;
         return render(scene, request);
       };
       const Picture drawn = picture(technique), cast = picture("raycast");
