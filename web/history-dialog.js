@@ -28,6 +28,19 @@ export function rmsDifference(a, b) {
   return Math.sqrt(sum / (a.data.length * 0.75)) / 255;
 }
 
+function canvasOf() {
+  const canvas = element("canvas");
+  canvas.setAttribute("role", "img");
+  canvas.ariaLabel = "Not rendered yet";
+  return canvas;
+}
+
+function paint(canvas, { pixels, technique }) {
+  Object.assign(canvas, { width: pixels.width, height: pixels.height });
+  canvas.getContext("2d").putImageData(pixels, 0, 0);
+  canvas.ariaLabel = `The scene by ${technique.type}`;
+}
+
 async function pixelsOf(png) {
   const bitmap = await createImageBitmap(png);
   const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
@@ -43,7 +56,7 @@ export class HistoryDialog {
   #note;
   #sides; // selects of the left and the right technique
   #work = null; // AbortController of the pictures being made
-  #steps = []; // {technique, card, url, pixels}
+  #steps = []; // {technique, card, pixels, stats}
 
   // Fills `dialog`, an empty <dialog>.
   constructor(dialog) {
@@ -62,7 +75,6 @@ export class HistoryDialog {
   async show(picture, techniques) {
     this.#work?.abort();
     const { signal } = (this.#work = new AbortController());
-    for (const { url } of this.#steps) if (url) URL.revokeObjectURL(url);
     const scale = Math.min(1, SIDE / Math.max(picture.width, picture.height));
     const size = { width: Math.round(picture.width * scale), height: Math.round(picture.height * scale) };
     this.#steps = inOrder(techniques).map((technique) => ({ technique, card: this.#makeCard(technique) }));
@@ -87,16 +99,14 @@ export class HistoryDialog {
     const { png, stats } = await getFrame(address, signal);
     step.pixels = await pixelsOf(png);
     signal.throwIfAborted();
-    step.url = URL.createObjectURL(png);
     step.stats = stats;
-    step.card.querySelector("img").src = step.url;
+    paint(step.card.querySelector("canvas"), step);
     step.card.querySelector(".figures").textContent = `${Math.round(stats.renderMs)} ms`;
   }
 
   #makeCard(technique) {
     const card = element("figure");
-    const image = element("img");
-    image.alt = `The scene by ${technique.type}`;
+    const image = canvasOf();
     const caption = element("figcaption");
     caption.append(
       element("b", technique.type),
@@ -129,7 +139,7 @@ export class HistoryDialog {
   #makeWipe() {
     const wipe = element("div", "", "wipe");
     const pair = element("div", "", "pair");
-    const images = [element("img"), element("img")];
+    const images = [canvasOf(), canvasOf()];
     const slider = element("input");
     Object.assign(slider, { type: "range", min: 0, max: 100, value: 50, ariaLabel: "Boundary of the two pictures" });
     const place = () => pair.style.setProperty("--boundary", `${slider.value}%`);
@@ -150,11 +160,10 @@ export class HistoryDialog {
   }
 
   #showSides() {
-    const images = this.#wipe.querySelectorAll("img");
+    const images = this.#wipe.querySelectorAll("canvas");
     for (const [side, select] of this.#sides.entries()) {
       const step = this.#steps.find(({ technique }) => technique.type === select.value);
-      images[side].src = step.url;
-      images[side].alt = `The scene by ${select.value}`;
+      paint(images[side], step);
     }
   }
 }
