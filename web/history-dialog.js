@@ -11,9 +11,10 @@ const short = new Intl.NumberFormat("en", { notation: "compact", maximumSignific
 
 // Returns the catalog's techniques in the order of the history: those on polygons, then those that trace rays.
 export function inOrder(techniques) {
-  const drawn = (technique) => technique.missing.includes("shadows");
-  return [...techniques.filter(drawn), ...techniques.filter((technique) => !drawn(technique))];
+  return [...techniques.filter(drawsPolygons), ...techniques.filter((technique) => !drawsPolygons(technique))];
 }
+
+const drawsPolygons = ({ missing }) => missing.includes("shadows");
 
 // Returns a sentence on what the technique does not show.
 export function sentenceOf({ missing }) {
@@ -122,9 +123,9 @@ export class HistoryDialog {
   #compare() {
     const made = this.#steps.filter(({ pixels }) => pixels);
     const last = made.at(-1);
-    for (const { card, pixels, stats } of made) {
+    for (const { technique, card, pixels, stats } of made) {
       const off = pixels === last.pixels ? "reference" : `difference ${rounded(rmsDifference(pixels, last.pixels))}`;
-      const rays = stats.rays > 0 ? `${short.format(stats.rays)} rays · ` : "";
+      const rays = !drawsPolygons(technique) ? `${short.format(stats.rays)} rays · ` : "";
       card.querySelector(".figures").textContent = `${Math.round(stats.renderMs)} ms · ${rays}${off}`;
     }
     if (made.length < 2) return;

@@ -239,18 +239,19 @@ class SceneReader {
     std::size_t set;
     int index;  // within the set
     Vec3d emission;
+    std::string name;
   };
 
   void read_material(const std::string& name, Params& p) {
     const auto type = p.pick("type", "Material type.", choices_of(material_types()));
     names_.add(name);
-    if (!type) return places_.push_back({0, 0, {}});
+    if (!type) return places_.push_back({0, 0, {}, name});
     MaterialSet& set = *scene_->materials[*type];
     const int index = set.size();
     set.add(p);
     const Vec3d emission =
         p.color("emission", "Radiance that surfaces emit on both sides, per channel.", Vec3d(0));
-    places_.push_back({*type, index, emission});
+    places_.push_back({*type, index, emission, name});
   }
 
   void read_environment(Params& p) {
@@ -293,8 +294,12 @@ class SceneReader {
     for (std::size_t set = 1; set < first.size(); ++set)
       first[set] = first[set - 1] + scene_->materials[set - 1]->size();
     scene_->emission.resize(static_cast<std::size_t>(first.back() + scene_->materials.back()->size()));
-    for (const auto& [set, index, emission] : places_)
-      scene_->emission[static_cast<std::size_t>(first[set] + index)] = emission;
+    scene_->material_names.resize(scene_->emission.size());
+    for (const auto& [set, index, emission, name] : places_) {
+      const auto number = static_cast<std::size_t>(first[set] + index);
+      scene_->emission[number] = emission;
+      scene_->material_names[number] = name;
+    }
     const auto number = [&](const ObjectReader& objects, std::vector<std::int32_t>& into) {
       objects.for_each([&](std::size_t name, std::size_t primitives, std::int32_t) {
         const MaterialPlace place = places_[name];

@@ -65,8 +65,10 @@ struct Plan {
   bool specular = true;      // mirrored and refracted rays are traced
   bool filters = true;       // materials absorb light inside objects
   bool lens = false;         // camera rays start on a lens
-  bool filtered = false;     // sample positions follow the requested filter
-  int reuse = 1;             // paths per group that share the light of their second vertices; a power of two
+  // Names of the materials if the energy account is kept, else empty.
+  std::vector<std::string> energy_of;
+  bool filtered = false;  // sample positions follow the requested filter
+  int reuse = 1;          // paths per group that share the light of their second vertices; a power of two
   bool constant_half = false;  // parallel view and light: the half vector is computed once per batch
   int slice = 256;             // rays per pass through the stages; does not change results
   std::vector<Decision> decisions;

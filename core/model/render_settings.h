@@ -71,6 +71,7 @@ struct RenderSettings {
   std::optional<Precision> precision;
   std::optional<std::uint64_t> seed;
   std::optional<bool> reorder;
+  std::optional<bool> energy;
   std::optional<Prediction> prediction;
   std::optional<double> time, shutter;             // seconds
   std::optional<std::vector<std::string>> layers;  // film channels in addition to radiance

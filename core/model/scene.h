@@ -141,7 +141,8 @@ struct Scene {
   std::shared_ptr<const Atmosphere> atmosphere;    // may be null
   std::vector<std::unique_ptr<ShapeSet>> shapes;
   std::vector<std::unique_ptr<MaterialSet>> materials;
-  std::vector<Vec3d> emission;  // per material: radiance emitted on both sides
+  std::vector<Vec3d> emission;              // per material: radiance emitted on both sides
+  std::vector<std::string> material_names;  // per material
   std::vector<std::unique_ptr<LightSet>> light_sets;
   std::vector<LightPlace> lights;  // in file order
   std::deque<Model> models;

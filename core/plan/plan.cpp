@@ -64,6 +64,7 @@ class Planner {
       leave_out_for_trees();
     }
     if (plan_.technique->rasterizes) explain_rasterization();
+    keep_energy_account();
     if (scene_.atmosphere)
       decide("atmosphere", scene_.atmosphere->type(),
              scene_.atmosphere->hides_background()
@@ -252,6 +253,15 @@ class Planner {
     decide("shadows", plan_.shadows ? "traced" : "none",
            plan_.shadows ? "objects may block light"
                          : "the only object is convex and seen from outside: nothing blocks its light");
+  }
+
+  void keep_energy_account() {
+    if (!*plan_.asked.energy) return;
+    if (plan_.technique->rasterizes)
+      return decide("energy account", "none",
+                    std::string(plan_.technique->name) + " lights points, not rays");
+    plan_.energy_of = scene_.material_names;
+    decide("energy account", "kept", "as specified; the image does not change");
   }
 
   void explain_rasterization() {

@@ -12,6 +12,7 @@ Wavefront<T>::Wavefront(const World<T>& world, const Plan& plan)
       accelerator_(*world.accelerator),
       plan_(plan),
       vertices_(std::make_unique<Vertices>()),
+      energy_(plan_.energy_of.empty() ? nullptr : std::make_unique<EnergyAccount<T>>(geometry_)),
       atmosphere_(geometry_.atmosphere ? std::make_unique<AtmosphereStage<T>>(geometry_, plan_) : nullptr) {}
 
 template <class T>
@@ -92,6 +93,7 @@ void Wavefront<T>::run_slice(const LaneGroups& groups) {
   PathBatch<T>& paths = *v.paths;
   const LaneGroups met = find_vertices(groups);
   if (paths.depth == 0) record_channels(groups, met);
+  if (energy_) energy_->add(paths, v.hits, v.surface, draws(), met, *counts_);
   if (atmosphere_) atmosphere_->enter(v.hits, v.surface, groups, met, paths);
   shade(groups, met);
   if (atmosphere_) atmosphere_->leave(groups, paths, v.radiance);

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/lighting/atmosphere_stage.h"
+#include "core/lighting/energy_account.h"
 #include "core/model/path.h"
 #include "core/model/technique.h"
 
@@ -69,6 +70,7 @@ class Wavefront : public Tracer<T> {
   const Accelerator<T>& accelerator_;
   const Plan& plan_;
   std::unique_ptr<Vertices> vertices_;
+  std::unique_ptr<EnergyAccount<T>> energy_;        // null unless the plan keeps the account
   std::unique_ptr<AtmosphereStage<T>> atmosphere_;  // null if the scene has no atmosphere
 
  private:

@@ -56,6 +56,40 @@ std::string rays_table(In r) {
                           Count{rays.total()});
 }
 
+// Calls visit(name, sums) for each material that rays have hit.
+template <class Visit>
+void for_each_energy(In r, const Visit& visit) {
+  const std::vector<EnergySums>& energy = r.stats->counts.energy;
+  for (std::size_t i = 0; i < energy.size(); ++i)
+    if (energy[i].hits > 0) visit(r.plan->energy_of[i], energy[i]);
+}
+
+Json energy_json(In r) {
+  if (r.plan->energy_of.empty()) return nullptr;
+  Json rows = Json::array();
+  for_each_energy(r, [&](const std::string& name, const EnergySums& sums) {
+    rows.push_back({{"material", name},
+                    {"hits", sums.hits},
+                    {"diffuse", sums.mean(sums.diffuse)},
+                    {"specular", sums.mean(sums.specular)},
+                    {"transmitted", sums.mean(sums.transmitted)},
+                    {"absorbed", sums.absorbed()}});
+  });
+  return rows;
+}
+
+std::string energy_table(In r) {
+  if (r.plan->energy_of.empty()) return "";
+  std::string text =
+      formatted("%14s %10s %10s %11s %10s", "hits", "diffuse", "specular", "transmitted", "absorbed");
+  for_each_energy(r, [&](const std::string& name, const EnergySums& sums) {
+    text += formatted("\n  %-10.40s %14llu %10.6f %10.6f %11.6f %10.6f", name.c_str(), Count{sums.hits},
+                      sums.mean(sums.diffuse), sums.mean(sums.specular), sums.mean(sums.transmitted),
+                      sums.absorbed());
+  });
+  return text;
+}
+
 std::string image_line(In r) {
   return formatted("%d x %d pixels, samples per pixel: %d", r.plan->width, r.plan->height, r.plan->samples);
 }
@@ -162,6 +196,7 @@ constexpr std::array kResults{
         .member_type = "integer",
         .json = [](In r) { return r.rays ? Json(*r.rays) : Json(); }},
     of_stats("rays", rays_by_kind, "rays", rays_table),
+    of_stats("energy", energy_json, "energy", energy_table),
     of_stats(
         "structure_bytes", [](In r) { return Json(r.stats->structure.bytes); }, "structure", structure_line),
     of_stats("structure_depth", [](In r) { return Json(r.stats->structure.depth); }),

@@ -8,7 +8,7 @@
 
 #include "tests/support/pictures.h"
 
-// Measures the known faults of polygon shading on the scenes scenes/fault-*.json, against ray casting. The
+// Measures the known faults of polygon shading on the scenes scenes/polygon-*.json, against ray casting. The
 // rows that the test prints form the table of docs/polygon-faults.md.
 namespace orrery::test {
 namespace {
@@ -170,7 +170,7 @@ std::string figure(double value) {
 }
 
 std::string row_of(const Fault& fault) {
-  const Json scene = sample(std::string("fault-") + fault.file);
+  const Json scene = sample(std::string("polygon-") + fault.file);
   Json exact = scene, mended = scene;
   if (fault.truth) fault.truth(exact);
   fault.mend(mended);
@@ -178,15 +178,16 @@ std::string row_of(const Fault& fault) {
   const double off = rms(shown, truth), left = rms(without, truth);
   EXPECT_GE(off, fault.least_rms) << fault.name;
   EXPECT_LE(left, fault.largest_rms) << fault.name;
-  const std::string columns[] = {fault.name,
-                                 std::string("[") + fault.file + "](../scenes/fault-" + fault.file + ".json)",
-                                 std::string(fault.figure) + ", " + fault.unit,
-                                 figure(fault.measure(shown)),
-                                 figure(fault.measure(truth)),
-                                 figure(off),
-                                 fault.remedy,
-                                 figure(fault.measure(without)),
-                                 figure(left)};
+  const std::string columns[] = {
+      fault.name,
+      std::string("[") + fault.file + "](../scenes/polygon-" + fault.file + ".json)",
+      std::string(fault.figure) + ", " + fault.unit,
+      figure(fault.measure(shown)),
+      figure(fault.measure(truth)),
+      figure(off),
+      fault.remedy,
+      figure(fault.measure(without)),
+      figure(left)};
   std::string row = "|";
   for (const std::string& column : columns) row += " " + column + " |";
   return row;
@@ -194,7 +195,7 @@ std::string row_of(const Fault& fault) {
 
 // Colours interpolated in triangles turn with the image. Bilinear interpolation along scan lines would not.
 TEST(PolygonFaults, InterpolatesIndependentlyOfImageRotation) {
-  Json scene = sample("fault-orientation");
+  Json scene = sample("polygon-orientation");
   scene["image"] = {{"width", 200}, {"height", 200}};
   const Shown upright = show(scene);
   scene["camera"]["up"] = {1, 0, 0};  // the right side is now at the top
