@@ -39,7 +39,7 @@ std::string_view heading_of(const RenderOption& option) {
   if (option.section == Section::camera) return "Camera";
   if (option.section == Section::budget) return "Budget";
   if (is_one_of({"technique", "max_depth", "min_contribution", "path_reuse", "clamp_indirect",
-                 "tessellation_error", "interpolation"}))
+                 "tessellation_error", "interpolation", "energy"}))
     return "Light";
   if (is_one_of({"accelerator", "precision", "ray_sorting", "occluder_prediction"})) return "Speed";
   if (is_one_of({"time", "shutter"})) return "Motion";
