@@ -13,6 +13,7 @@
 #include "core/environments/registry.h"
 #include "core/lights/registry.h"
 #include "core/load/facts.h"
+#include "core/load/media.h"
 #include "core/materials/registry.h"
 #include "core/params/motion.h"
 #include "core/plan/limits.h"
@@ -226,6 +227,7 @@ class SceneReader {
     number_materials();
     number_objects();
     gather_motion();
+    scene_->media = find_media(*scene_);
     scene_->facts = gather_facts(*scene_);
     const LocatedValue& smallest = scene_->facts.smallest_feature;
     if (smallest.value > 0 && smallest.value < kMinSize)  // moving triangles may have size 0 at some times

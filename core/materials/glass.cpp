@@ -32,15 +32,14 @@ FacetAlbedo<double> lossless_albedo(double alpha, double far_index) {
 // thinner side, which has no total reflection. n^2 (1 - F) is equal on both sides.
 template <class N>
 Glass<double> Glass<N>::read(Params& p) {
-  const double ior = p.number("ior", "Index of refraction inside, divided by the index outside.",
-                              {.min = 0.1, .max = 10}, 1.5);
+  const double ior = p.number("ior", "Index of refraction; air: 1.", {.min = 0.1, .max = 10}, 1.5);
   const double roughness = p.number(
       "roughness", "Roughness from 0 (smooth) to 1; its square is the alpha of the GGX distribution.",
       {.min = 0, .max = 1}, 0.0);
   const Vec3d filter =
       p.color("filter", "Transmittance after one metre inside, 0 to 1 per channel.", Vec3d(1), 1);
   Glass<double> glass{};
-  glass.body = {ior, normal_reflectance(ior, 0.0), 1.0, log2_filter_of(filter)};
+  glass.body = {ior, normal_reflectance(ior, 0.0), 1.0, log2_filter_of(filter), read_priority(p)};
   const double alpha = roughness * roughness;
   if (alpha < kMinAlpha || alpha * spread_by_index(ior) < kMinSpread) return glass;
   glass.alpha = alpha;
@@ -66,12 +65,13 @@ class GlassKernel final : public LobeKernel<Glass, T> {
               const PathDraws<T>& draws, const LaneGroups& groups, Lobes lobes,
               ScatterBatch<T>& out) const override {
     const N zero(T(0));
-    this->for_each_register(surface, groups, [&](int i, const auto& mine, const Glass<N>& glass) {
+    this->for_each_register(surface, groups, [&](int i, const auto& mine, const Glass<N>& record) {
+      const Glass<N> glass = record.between_media(surface, i);
       const auto [u, v] = draws.two(SampleSet::lobe, i);
       const auto rough = mine && glass.alpha > zero, smooth = mine && !rough;
       if (any(rough)) {
         const N side = draws.two(SampleSet::survival, i).v;
-        this->sample_rough(rays, surface, i, rough, glass, lobes, {u, v, side}, out);
+        this->sample_rough(rays, surface, i, rough, record, lobes, {u, v, side}, out);
       }
       if (!any(smooth)) return;
       const Vec3<N> direction = rays.direction.at(i), normal = surface.normal.at(i);
@@ -87,7 +87,8 @@ class GlassKernel final : public LobeKernel<Glass, T> {
   void specular(const RayBatch<T>& rays, const HitBatch<T>& hits, const SurfaceBatch<T>& surface,
                 const LaneGroups& groups, SpecularBatch<T>& out) const override {
     const N zero(T(0)), one(T(1));
-    this->for_each_register(surface, groups, [&](int i, const auto& mine, const Glass<N>& glass) {
+    this->for_each_register(surface, groups, [&](int i, const auto& mine, const Glass<N>& record) {
+      const Glass<N> glass = record.between_media(surface, i);
       const auto inside = surface.side.at(i) < zero;
       const auto split = glass.body.split(rays.direction.at(i), surface.normal.at(i), inside);
       const N smooth = select(glass.alpha > zero, zero, one);

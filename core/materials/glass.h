@@ -40,6 +40,15 @@ struct Glass {
     return alpha > 0 ? ReflectionLimits{} : ReflectionLimits{Vec3d(0), Vec3d(0), Vec3d(1), true};
   }
 
+  Medium medium() const { return body.medium(); }
+  // As Refractive::between_media(). The albedos of rough facets stay those of facets in air.
+  template <class T>
+  Glass between_media(const SurfaceBatch<T>& surface, int i) const {
+    Glass between = *this;
+    between.body = body.between_media(surface, i);
+    return between;
+  }
+
   N rough() const { return alpha; }
   Vec3<N> ambient_reflectance(const N&, Lobes) const {
     const N one(ScalarOf<N>(1)), zero(ScalarOf<N>(0));

@@ -89,9 +89,10 @@ class LobeKernel : public MaterialRecords<Record, T> {
       pdf.put(i, mine, zero);
       if (!any(lit)) return;
       const auto inside = surface.side.at(i) < zero;
-      const auto scattered = record.scattered(local_viewer, local_light, inside, lobes);
+      const auto& between = between_media(record, surface, i);
+      const auto scattered = between.scattered(local_viewer, local_light, inside, lobes);
       pi_bsdf_cos.put(i, lit,
-                      scattered.pi_bsdf_cos * record.body_transmittance(inside, surface.travelled.at(i)));
+                      scattered.pi_bsdf_cos * between.body_transmittance(inside, surface.travelled.at(i)));
       pdf.put(i, lit, scattered.pdf);
     });
   }
@@ -110,9 +111,10 @@ class LobeKernel : public MaterialRecords<Record, T> {
  protected:
   // Samples the `lobes` of the record. Sets the lanes `mine` of `out`.
   void sample_rough(const RayBatch<T>& rays, const SurfaceBatch<T>& surface, int i, const MaskOf<N>& mine,
-                    const Record<N>& record, Lobes lobes, const LobeDraw<N>& draw,
+                    const Record<N>& alone, Lobes lobes, const LobeDraw<N>& draw,
                     ScatterBatch<T>& out) const {
     if (!any(mine)) return;
+    const auto& record = between_media(alone, surface, i);
     const N zero(T(0));
     const Vec3<N> viewer = -rays.direction.at(i), geometric = surface.geometric.at(i);
     const auto inside = surface.side.at(i) < zero;
@@ -132,6 +134,13 @@ class LobeKernel : public MaterialRecords<Record, T> {
   }
 
  private:
+  // Returns the record, adapted to the media on both sides of the surfaces if it has a medium.
+  static decltype(auto) between_media(const Record<N>& record, const SurfaceBatch<T>& surface, int i) {
+    if constexpr (requires { record.between_media(surface, i); })
+      return record.between_media(surface, i);
+    else
+      return (record);
+  }
   // Returns the lanes where the viewer is above the shading surface, and the light is on the same side of the
   // shading and the geometric surface.
   static MaskOf<N> on_one_side(const Vec3<N>& local_viewer, const Vec3<N>& local_light,

@@ -7,7 +7,7 @@
 
 // A material type is one record, `template <class N> struct Rough`, and one kernel class `Kernel<T>` that
 // derives from MaterialRecords<Rough, T>. The record contains the formulas and the following functions, which
-// are called for Rough<double> only. The last four are optional: see MaterialSet for their meaning and
+// are called for Rough<double> only. The last five are optional: see MaterialSet for their meaning and
 // defaults.
 //   static Rough<double> read(Params&);  defined in the .cpp file, which registers the type
 //   MaterialTraits traits() const;
@@ -15,6 +15,7 @@
 //   double mirrored_share() const;       if the material mirrors
 //   double max_albedo() const;           if the material may create energy
 //   ReflectionLimits limits() const;     if bounds are known
+//   Medium medium() const;               if closed surfaces enclose a medium
 namespace orrery {
 
 // Materials of one type in the render's precision, and a loop over the registers that contain surfaces with
@@ -84,6 +85,13 @@ class MaterialSetOf final : public MaterialSet {
       return record.limits();
     else
       return {};
+  }
+  std::optional<Medium> medium(int index) const override {
+    const Record<double>& record = records_[static_cast<std::size_t>(index)];
+    if constexpr (requires { record.medium(); })
+      return record.medium();
+    else
+      return std::nullopt;
   }
   MaterialKernelPtr<float> kernel(float, int first) const override {
     return std::make_unique<Kernel<float>>(std::span<const Record<double>>(records_), first);

@@ -6,16 +6,24 @@
 
 namespace orrery {
 
+double read_priority(Params& p) {
+  constexpr double kMaxPriority = 1e6;
+  return p.number(
+      "priority",
+      "Where bodies overlap, the body of highest priority displaces the others; of equal ones, the "
+      "body that a ray entered last.",
+      {.min = -kMaxPriority, .max = kMaxPriority}, 0.0);
+}
+
 template <class N>
 Refractive<double> Refractive<N>::read(Params& p) {
-  const double ior =
-      p.number("ior", "Index of refraction inside, divided by the index outside.", {.min = 0.01, .max = 100});
+  const double ior = p.number("ior", "Index of refraction; air: 1.", {.min = 0.01, .max = 100});
   const bool exact =
       p.choice("fresnel", "Reflectance formula: Schlick's approximation or Fresnel's equations.",
                {"schlick", "exact"}, "schlick") == "exact";
   const Vec3d filter =
       p.color("filter", "Transmittance after one metre inside, 0 to 1 per channel.", Vec3d(1), 1);
-  return {ior, normal_reflectance(ior, 0.0), exact ? 1.0 : 0.0, log2_filter_of(filter)};
+  return {ior, normal_reflectance(ior, 0.0), exact ? 1.0 : 0.0, log2_filter_of(filter), read_priority(p)};
 }
 
 namespace {
@@ -29,7 +37,8 @@ class RefractiveKernel final : public MaterialRecords<Refractive, T> {
   void specular(const RayBatch<T>& rays, const HitBatch<T>& hits, const SurfaceBatch<T>& surface,
                 const LaneGroups& groups, SpecularBatch<T>& out) const override {
     const N zero(T(0)), one(T(1));
-    this->for_each_register(surface, groups, [&](int i, const auto& mine, const Refractive<N>& glass) {
+    this->for_each_register(surface, groups, [&](int i, const auto& mine, const Refractive<N>& body) {
+      const Refractive<N> glass = body.between_media(surface, i);
       const auto inside = surface.side.at(i) < zero;
       const auto split = glass.split(rays.direction.at(i), surface.normal.at(i), inside);
       out.reflectance.put(i, mine, Vec3<N>(split.reflectance));
@@ -44,7 +53,8 @@ class RefractiveKernel final : public MaterialRecords<Refractive, T> {
               const PathDraws<T>& draws, const LaneGroups& groups, Lobes,
               ScatterBatch<T>& out) const override {
     const N zero(T(0));
-    this->for_each_register(surface, groups, [&](int i, const auto& mine, const Refractive<N>& glass) {
+    this->for_each_register(surface, groups, [&](int i, const auto& mine, const Refractive<N>& body) {
+      const Refractive<N> glass = body.between_media(surface, i);
       const Vec3<N> direction = rays.direction.at(i), normal = surface.normal.at(i);
       const auto inside = surface.side.at(i) < zero;
       const auto split = glass.split(direction, normal, inside);

@@ -10,10 +10,11 @@ namespace orrery {
 // Smooth glass that mirrors and refracts, and may absorb light inside.
 template <class N>
 struct Refractive {
-  N ior;                // index of refraction inside / outside
-  N f0;                 // reflectance along the normal
-  N exact;              // 1: Fresnel's equations, 0: Schlick's approximation
-  Vec3<N> log2_filter;  // log2 of the transmittance per metre inside
+  N ior;                           // index of refraction inside / outside, with air outside as read
+  N f0;                            // reflectance along the normal
+  N exact;                         // 1: Fresnel's equations, 0: Schlick's approximation
+  Vec3<N> log2_filter;             // log2 of the transmittance per metre inside
+  N priority = N(ScalarOf<N>(0));  // see Medium
 
   static Refractive<double> read(Params& p);
   MaterialTraits traits() const {
@@ -21,6 +22,16 @@ struct Refractive {
   }
   ReflectionLimits limits() const { return {Vec3d(0), Vec3d(0), Vec3d(1), true}; }
   double mirrored_share() const { return f0; }
+  Medium medium() const { return {ior, priority, log2_filter, true}; }
+
+  // Returns the material with the media on both sides of the surfaces in register i, without the filter that
+  // the technique then applies: see SurfaceBatch::relative_index.
+  template <class T>
+  Refractive between_media(const SurfaceBatch<T>& surface, int i) const {
+    if (!surface.relative_index) return *this;
+    const N index = surface.relative_index->at(i), zero(T(0));
+    return {index, select(index == ior, f0, normal_reflectance(index, zero)), exact, Vec3<N>(zero), priority};
+  }
 
   struct Split {
     N reflectance;
@@ -51,6 +62,9 @@ struct Refractive {
             exp2_flushed(log2_filter.z * depth)};
   }
 };
+
+// Reads Medium::priority.
+double read_priority(Params& p);
 
 // Returns Refractive::log2_filter for a transmittance per metre.
 inline Vec3d log2_filter_of(const Vec3d& filter) {

@@ -1,5 +1,7 @@
 #include "core/meshes/repair.h"
 
+#include <algorithm>
+
 #include "core/base/task_scope.h"
 #include "core/math/face_normal.h"
 
@@ -11,6 +13,34 @@ std::size_t drop_degenerate(TriangleMesh& mesh) {
     const Vec3d &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
     return face_normal(a, b, c) == Vec3d();
   });
+}
+
+bool is_watertight(std::span<const std::array<std::uint32_t, 3>> triangles, const PositionIndices& places) {
+  struct Edge {
+    std::uint32_t low, high;
+    int direction;  // 1: from low to high
+  };
+  std::vector<Edge> edges;
+  edges.reserve(3 * triangles.size());
+  for (const auto& triangle : triangles) {
+    checkpoint();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t from = places[triangle[k]], to = places[triangle[(k + 1) % 3]];
+      if (from != to) edges.push_back({std::min(from, to), std::max(from, to), from < to ? 1 : -1});
+    }
+  }
+  const auto before = [](const Edge& a, const Edge& b) {
+    return a.low != b.low ? a.low < b.low : a.high < b.high;
+  };
+  std::sort(edges.begin(), edges.end(), before);
+  int sum = 0;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    checkpoint(i);
+    sum += edges[i].direction;
+    if (i + 1 < edges.size() && !before(edges[i], edges[i + 1])) continue;
+    if (sum != 0) return false;
+  }
+  return !edges.empty();
 }
 
 void drop_unused(TriangleMesh& mesh) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "core/meshes/mesh_file.h"
 
@@ -35,6 +36,10 @@ void smooth_normals(TriangleMesh& mesh, double crease_degrees, const PositionInd
 inline void smooth_normals(TriangleMesh& mesh, double crease_degrees) {
   smooth_normals(mesh, crease_degrees, position_indices_of(mesh.positions));
 }
+
+// Returns whether the triangles enclose a volume: each edge from one position to another has as many
+// triangles in one direction as in the other.
+bool is_watertight(std::span<const std::array<std::uint32_t, 3>> triangles, const PositionIndices& places);
 
 // Removes vertices that no triangle uses.
 void drop_unused(TriangleMesh& mesh);

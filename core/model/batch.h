@@ -198,6 +198,9 @@ struct SurfaceBatch {
   Array<T> footprint;        // pixel width in metres, across the ray
   Array<T> travelled;        // metres from the ray's origin
   Array<IndexOf<T>> object;  // object number in the scene: `objects` first, then `instances`
+  // Index of refraction inside the surface, divided by the index outside. Null unless Plan::media: indices of
+  // materials are then relative to air, and materials apply their filters. Otherwise the technique does.
+  const Array<T>* relative_index = nullptr;
 
   // Returns the origins of rays along `direction` from the surfaces in register i. The origins are offset by
   // `step` to the side on which the rays leave.

@@ -2,8 +2,10 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "core/model/draws.h"
+#include "core/model/media.h"
 #include "core/model/rounding.h"
 
 // Materials. A scene stores all materials of one type in a MaterialSet, which creates a kernel in the plan's
@@ -84,6 +86,7 @@ struct MaterialTraits {
   bool diffuse = false;       // has a diffuse lobe
   bool non_diffuse = false;   // has a non-diffuse lobe
   bool emits = false;         // surfaces with the material emit light
+  bool straight = false;      // transmits without refraction: SpecularBatch::refracted continues the ray
   SurfaceFields fields = {};  // surface fields that `evaluate` and `sample` read
 
   MaterialTraits& operator|=(const MaterialTraits& other) {
@@ -95,6 +98,7 @@ struct MaterialTraits {
     diffuse |= other.diffuse;
     non_diffuse |= other.non_diffuse;
     emits |= other.emits;
+    straight |= other.straight;
     fields |= other.fields;
     return *this;
   }
@@ -112,6 +116,8 @@ struct ReflectionLimits {
   Vec3d light{std::numeric_limits<double>::infinity()};  // pi_bsdf_cos of MaterialKernel::evaluate()
   Vec3d albedo{1.0};                                     // reflected fraction of light from all directions
   bool specular = false;                                 // may also mirror and refract all light
+  // Fraction of the light from behind that passes in addition to the bounds above, which it does not reduce.
+  Vec3d transmitted{0.0};
 };
 
 // All materials of one type. add() is called by one thread while the scene is loaded, records problems in
@@ -130,6 +136,9 @@ class MaterialSet {
   // and channels, to within 0.01. An albedo above 1 means that the material creates energy.
   virtual double max_albedo(int /*index*/) const { return 1; }
   virtual ReflectionLimits limits(int /*index*/) const { return {}; }
+  // Returns the medium inside closed surfaces, or nullopt if light that passes the surface stays in the same
+  // medium.
+  virtual std::optional<Medium> medium(int /*index*/) const { return std::nullopt; }
   // Returns a kernel whose materials are numbered from `first`.
   virtual MaterialKernelPtr<float> kernel(float, int first) const = 0;
   virtual MaterialKernelPtr<double> kernel(double, int first) const = 0;

@@ -2,6 +2,7 @@
 
 #include "core/math/compress.h"
 #include "core/model/batch.h"
+#include "core/model/media.h"
 
 namespace orrery {
 
@@ -19,7 +20,8 @@ struct PathBatch {
   // Density per solid angle with which the ray's direction was sampled, or 0 for perfectly specular
   // directions. Filled only by techniques that sample directions. Not filled for camera rays.
   Array<T> pdf;
-  int depth = 0;  // 0: camera rays
+  std::unique_ptr<MediaLists> media;  // bodies that contain the rays; null unless Plan::media
+  int depth = 0;                      // 0: camera rays
 
   // Appends the rays in the lanes `mask`, with throughput `weight`. Returns the mask as bits.
   unsigned append(const MaskOf<Lanes<T>>& mask, const Ray<Lanes<T>>& ray, const Vec3<Lanes<T>>& weight,
@@ -83,6 +85,7 @@ struct PathBatch {
       copy(width, other.width);
       copy(spread, other.spread);
     }
+    if (media) std::copy_n(other.media->begin(), other.rays.count, media->begin() + rays.count);
     rays.count += other.rays.count;
   }
 };

@@ -60,11 +60,13 @@ struct Plan {
   std::vector<const ChannelType*> channels;  // in addition to radiance
   SurfaceFields fields;                      // surface fields that stages and channels read
   // Stages of the pipeline that are enabled, and their parameters.
-  bool direct_light = true;  // light sources are evaluated
-  bool shadows = true;       // shadow rays are traced
-  bool specular = true;      // mirrored and refracted rays are traced
-  bool filters = true;       // materials absorb light inside objects
-  bool lens = false;         // camera rays start on a lens
+  bool direct_light = true;   // light sources are evaluated
+  bool shadows = true;        // shadow rays are traced
+  bool specular = true;       // mirrored and refracted rays are traced
+  bool filters = true;        // materials absorb light inside objects
+  bool media = false;         // rays know the bodies that they are inside of
+  bool eye_in_media = false;  // camera rays may start inside bodies
+  bool lens = false;          // camera rays start on a lens
   // Names of the materials if the energy account is kept, else empty.
   std::vector<std::string> energy_of;
   bool filtered = false;  // sample positions follow the requested filter

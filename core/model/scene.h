@@ -15,6 +15,7 @@
 #include "core/model/environment.h"
 #include "core/model/light.h"
 #include "core/model/material.h"
+#include "core/model/media.h"
 #include "core/model/radiance_range.h"
 #include "core/model/render_settings.h"
 #include "core/model/rounding.h"
@@ -57,7 +58,9 @@ struct SceneFacts {
       layer_distance{std::numeric_limits<double>::infinity(), ""};
   MirrorChain mirrors;
   LocatedValue max_albedo{1, ""};  // largest albedo above 1 and an object with it; 1 if no albedo is above 1
-  RoundingLimit rounding;          // strictest of all lights and materials; `reason` names the object
+  // As max_albedo, over materials with mirrored or transmitted rays, which ray trees follow too.
+  LocatedValue max_followed_albedo{1, ""};
+  RoundingLimit rounding;  // strictest of all lights and materials; `reason` names the object
 };
 
 // Returns the total number of primitives in the sets.
@@ -151,6 +154,7 @@ struct Scene {
   std::vector<ObjectRun> object_runs;     // in ascending order; a run ends where the next run begins
   int object_count = 0;
   TimeSpan motion;
+  Media media;  // empty unless the bounds of two bodies overlap
   SceneFacts facts;
 
   // Returns the index in object_runs of the run that contains `primitive`.

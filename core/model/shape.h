@@ -114,8 +114,15 @@ using ShapeKernelPtr = std::shared_ptr<const ShapeKernel<T>>;
 
 // Properties of a shape type that the plan uses.
 struct ShapeTraits {
-  bool convex = false;  // convex or flat: the outside cannot shadow or reflect itself
-  bool closed = false;  // has an inside
+  bool convex = false;      // convex or flat: the outside cannot shadow or reflect itself
+  bool closed = false;      // has an inside
+  bool half_space = false;  // unbounded, with an inside and an outside
+};
+
+// Surface formed by the primitives `index` to `last` - 1 of a set, where `index` is its first primitive.
+struct Shell {
+  int last;
+  bool closed;  // separates an inside from the outside
 };
 
 // Surface on which light sampling can choose points.
@@ -176,6 +183,8 @@ class ShapeSet {
   // bounded.
   virtual double anchor_magnitude(int /*index*/) const { return 0; }
   virtual ShapeTraits traits() const = 0;
+  // Returns the surface that begins with primitive `index`. Takes time proportional to its size.
+  virtual Shell shell(int index) const { return {index + 1, traits().closed || traits().half_space}; }
   // Returns the primitive's whole surface, or nullopt if light cannot be sampled from it.
   virtual std::optional<Patch> patch(int /*index*/) const { return std::nullopt; }
 

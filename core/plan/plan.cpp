@@ -50,6 +50,7 @@ class Planner {
     choose_accelerator();
     choose_order();
     choose_prediction();
+    choose_media();
     const SceneFacts& facts = scene_.facts;
     if (plan_.technique->draws_light) {
       plan_.cut_range = plan_.technique->interreflects
@@ -236,6 +237,32 @@ class Planner {
              "as specified; every prediction is verified, so the image does not change");
   }
 
+  // Follows the media around rays only if a ray may be in two bodies at once, or an opaque surface inside a
+  // body that absorbs light.
+  void choose_media() {
+    const Media& media = scene_.media;
+    const MaterialTraits& used = scene_.facts.materials;
+    if (!plan_.technique->secondary_rays || !used.transmits || plan_.max_depth == 0) return;
+    if (!media.nested())
+      return decide("nested media", "none", "bodies of transparent materials contain and touch no others");
+    plan_.media = true;
+    plan_.eye_in_media = may_start_in(media);
+    decide("nested media", plan_.eye_in_media ? "followed from the eye" : "followed",
+           media.where + " and " + media.other + " may be in one place");
+  }
+  // Returns whether the bounds of a body contain the eye, extended by the lens, or whether the camera has no
+  // eye.
+  bool may_start_in(const Media& media) const {
+    const Vec3d lens(plan_.frame.aperture_radius);
+    return plan_.camera->parallel() ||
+           std::any_of(media.bounds.begin(), media.bounds.end(), [&](const Boundsd& box) {
+             Boundsd around = box;
+             around.lo = box.lo - lens;
+             around.hi = box.hi + lens;
+             return around.contains(plan_.frame.eye);
+           });
+  }
+
   void choose_lights() {
     const bool glows = any_light_shines(scene_);
     plan_.direct_light = glows && scene_.facts.materials.lit;
@@ -323,13 +350,14 @@ class Planner {
   }
 
   void choose_reuse() {
-    const bool shares =
-        plan_.max_depth >= 2 && scene_.facts.materials.lit && plan_.shutter == 0 && !scene_.atmosphere;
+    const bool shares = plan_.max_depth >= 2 && scene_.facts.materials.lit && plan_.shutter == 0 &&
+                        !plan_.media && !scene_.atmosphere;
     plan_.reuse = shares ? static_cast<int>(std::bit_floor(static_cast<unsigned>(*plan_.asked.reuse)))
                          : 1;  // a power of two, because it must divide the pixels of a tile
     decide("path reuse", plan_.reuse > 1 ? "groups of " + std::to_string(plan_.reuse) : "none",
            plan_.reuse > 1     ? "connections to vertices of other paths cost less than new paths"
            : shares            ? "as specified"
+           : plan_.media       ? "paths in different media see different surfaces"
            : plan_.shutter > 0 ? "paths at different times see different geometry"
            : scene_.atmosphere ? "the atmosphere attenuates each connection differently"
                                : "no path has a second vertex that receives light");

@@ -74,6 +74,12 @@ class MeshSet final : public ShapeSet {
     return reach;
   }
   ShapeTraits traits() const override { return {.convex = false, .closed = false}; }
+  Shell shell(int index) const override {
+    const std::size_t part = part_number(static_cast<std::size_t>(index));
+    const TriangleMesh mesh = mesh_of(part);
+    return {static_cast<int>(table_.parts[part].first + mesh.triangles.size()),
+            is_watertight(mesh.triangles, position_indices_of(mesh.positions))};
+  }
   std::optional<Patch> patch(int index) const override {
     return patch_of(table_.corners(static_cast<std::size_t>(index)));
   }

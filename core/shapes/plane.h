@@ -11,7 +11,7 @@ template <class N>
 struct Plane {
   Vec3<N> point, normal;
 
-  static constexpr ShapeTraits kTraits = {.convex = true, .closed = false};
+  static constexpr ShapeTraits kTraits = {.convex = true, .closed = false, .half_space = true};
 
   static void read(Params& p, std::vector<Plane<double>>& out);
   void tessellate(const TessellationView& view, int primitive, Tessellation& out) const;

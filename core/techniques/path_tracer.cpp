@@ -13,8 +13,9 @@ PathTracer<T>::PathTracer(const World<T>& world, const Plan& plan, Lobes followe
     : Wavefront<T>(world, plan),
       followed_(followed),
       sampled_light_(this->geometry_, this->accelerator_, this->plan_, followed),
-      has_emission_pass_(!world.geometry->emission.empty() || world.geometry->background != Vec3<T>() ||
-                         !sampled_light_.beyond().empty()) {
+      has_emission_pass_(!plan.eye_in_media &&
+                         (!world.geometry->emission.empty() || world.geometry->background != Vec3<T>() ||
+                          !sampled_light_.beyond().empty())) {
   if (sampled_light_.wants_diffuse_rays())
     diffuse_rays_ =
         std::make_unique<DiffuseRays<T>>(this->geometry_, this->accelerator_, this->plan_, sampled_light_);

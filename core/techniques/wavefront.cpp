@@ -13,7 +13,9 @@ Wavefront<T>::Wavefront(const World<T>& world, const Plan& plan)
       plan_(plan),
       vertices_(std::make_unique<Vertices>()),
       energy_(plan_.energy_of.empty() ? nullptr : std::make_unique<EnergyAccount<T>>(geometry_)),
-      atmosphere_(geometry_.atmosphere ? std::make_unique<AtmosphereStage<T>>(geometry_, plan_) : nullptr) {}
+      atmosphere_(geometry_.atmosphere ? std::make_unique<AtmosphereStage<T>>(geometry_, plan_) : nullptr) {
+  if (plan.media) media_ = std::make_unique<MediaStage<T>>(geometry_, accelerator_, plan_);
+}
 
 template <class T>
 void Wavefront<T>::trace(const RayBatch<T>& camera_rays, const Draws& draws, TraceResult<T>& out,
@@ -56,6 +58,10 @@ void Wavefront<T>::start(const RayBatch<T>& camera_rays) {
       camera->width.put(i, N(static_cast<T>(pixel.width)));
       camera->spread.put(i, N(static_cast<T>(pixel.spread)));
     }
+  }
+  if (media_) {
+    if (plan_.shutter > 0) inherit_times(*camera);
+    media_->start(*camera, *counts_);
   }
   waiting_.push_back(std::move(camera));
 }
@@ -105,7 +111,9 @@ LaneGroups Wavefront<T>::find_vertices(const LaneGroups& groups) {
   Vertices& v = *vertices_;
   reset(v.paths->rays, groups, v.hits);
   accelerator_.closest(v.paths->rays, groups, v.hits, counts_->accelerator);
-  return find_surfaces(geometry_, plan_.fields, *v.paths, groups, v.hits, v.surface, v.radiance);
+  const LaneGroups met =
+      find_surfaces(geometry_, plan_.fields, *v.paths, groups, v.hits, v.surface, v.radiance);
+  return media_ ? media_->pass(*v.paths, groups, v.hits, v.surface, v.radiance, *counts_) : met;
 }
 
 template <class T>
@@ -133,6 +141,7 @@ unsigned Wavefront<T>::spawn(Kind kind, int i, const MaskOf<N>& mask, const Vec3
   PathBatch<T>& into = kind == Kind::reflected ? *reflected_ : *refracted_;
   const unsigned bits = into.append(mask, ray, throughput, load_index<T>(v.paths->slot, i));
   if (plan_.fields.footprint) into.append_footprint(bits, v.surface.footprint.at(i), v.paths->spread.at(i));
+  if (media_) media_->inherit(*v.paths, i, dot(direction, v.surface.geometric.at(i)) < N(T(0)), bits, into);
   return bits;
 }
 
@@ -162,6 +171,7 @@ std::unique_ptr<PathBatch<T>> Wavefront<T>::take_batch(int depth) {
   if (spare_.empty()) spare_.push_back(std::make_unique<PathBatch<T>>());
   auto batch = std::move(spare_.back());
   spare_.pop_back();
+  if (media_ && !batch->media) batch->media = std::make_unique<MediaLists>();
   batch->rays.count = 0;
   batch->depth = depth;
   return batch;

@@ -4,6 +4,7 @@
 
 #include "core/lighting/atmosphere_stage.h"
 #include "core/lighting/energy_account.h"
+#include "core/lighting/media_stage.h"
 #include "core/model/path.h"
 #include "core/model/technique.h"
 
@@ -85,7 +86,8 @@ class Wavefront : public Tracer<T> {
 
   std::vector<std::unique_ptr<PathBatch<T>>> waiting_, spare_;
   std::unique_ptr<PathBatch<T>> reflected_, refracted_;
-  Array<T> time_;  // times of the camera rays; filled only if Plan::shutter > 0
+  std::unique_ptr<MediaStage<T>> media_;  // null unless Plan::media
+  Array<T> time_;                         // times of the camera rays; filled only if Plan::shutter > 0
   const Draws* draws_ = nullptr;
   TraceResult<T>* out_ = nullptr;
   TraceCounts* counts_ = nullptr;
