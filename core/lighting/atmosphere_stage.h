@@ -35,9 +35,15 @@ class AtmosphereStage {
   void enter(const HitBatch<T>& hits, const SurfaceBatch<T>& surface, const LaneGroups& groups,
              const LaneGroups& met, PathBatch<T>& paths) {
     find(paths.rays, paths.depth, hits, groups);
-    for (const int i : met) {
-      const auto inside = lanes_with(geometry_, surface, i, &MaterialTraits::transmits);
-      share_.put(i, inside && surface.side.at(i) < N(T(0)), N(T(1)));
+    if (paths.media) {
+      for (const int i : groups)
+        for (int lane = i; lane < std::min(i + kWidth<T>, paths.rays.count); ++lane)
+          if (!(*paths.media)[static_cast<std::size_t>(lane)].empty()) share_[lane] = 1;
+    } else {
+      for (const int i : met) {
+        const auto inside = lanes_with(geometry_, surface, i, &MaterialTraits::transmits);
+        share_.put(i, inside && surface.side.at(i) < N(T(0)), N(T(1)));
+      }
     }
     for (const int i : groups) {
       throughput_.put(i, paths.throughput.at(i));

@@ -128,6 +128,8 @@ void add_materials(const Scene& scene, std::span<const std::int32_t> first_user,
       const double most = set->max_albedo(static_cast<int>(i));
       if (most > facts.max_albedo.value)
         facts.max_albedo = {most, pointer_to_object(scene, first_user[first + i])};
+      if (set->traits().mirrors && most > facts.max_followed_albedo.value)
+        facts.max_followed_albedo = {most, pointer_to_object(scene, first_user[first + i])};
       const RoundingLimit limit = set->rounding(static_cast<int>(i));
       if (limit.epsilon < facts.rounding.epsilon)
         facts.rounding = {

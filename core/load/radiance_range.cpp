@@ -52,6 +52,12 @@ Vec3d interreflected(const Vec3d& own, const Vec3d& albedo) {
   return {series(own.x, albedo.x), series(own.y, albedo.y), series(own.z, albedo.z)};
 }
 
+// Returns `most`, but infinity in channels with light that a surface may amplify.
+Vec3d amplified(const Vec3d& most, const Vec3d& transmitted) {
+  const auto of = [](double light, double share) { return light > 0 && share > 1 ? kUnlimited : light; };
+  return {of(most.x, transmitted.x), of(most.y, transmitted.y), of(most.z, transmitted.z)};
+}
+
 }  // namespace
 
 // Bounds the radiance that each technique can compute. `own` is the radiance that a surface emits and
@@ -61,7 +67,9 @@ Vec3d interreflected(const Vec3d& own, const Vec3d& albedo) {
 //
 // Ray trees follow only mirror reflection and refraction, which return a fraction R of the light. Ambient and
 // direct light of a surface are at most 1 - R times their limits, so V does not exceed the largest sum of
-// these limits. Emission is not reduced, so V has no bound if an emitting surface is specular.
+// these limits. Emission is not reduced, so V has no bound if an emitting surface is specular. Surfaces with
+// ReflectionLimits::transmitted add this share t of V to their own light, so V is at most own / (1 - t). V
+// has no bound if t exceeds 1.
 void find_radiance_ranges(const Scene& scene, const std::vector<bool>& used, SceneFacts& facts) {
   const DirectLight light = find_direct_light(scene, facts);
   Vec3d tree = max_sky_radiance(scene), paths = tree;
@@ -69,6 +77,7 @@ void find_radiance_ranges(const Scene& scene, const std::vector<bool>& used, Sce
     paths = paths + scene.light_sets[place.set]->max_radiance_at_infinity(place.index);
   Vec3d distributed = paths;
   std::size_t number = 0;
+  Vec3d transmitted;
   for (const auto& set : scene.materials)
     for (int i = 0; i < set->size(); ++i, ++number) {
       if (number >= used.size() || !used[number]) continue;
@@ -76,7 +85,9 @@ void find_radiance_ranges(const Scene& scene, const std::vector<bool>& used, Sce
       facts.albedo = largest(facts.albedo, limits.albedo);
       const Vec3d ambient = product(limits.ambient, scene.ambient), emission = scene.emission[number];
       const Vec3d shines = interreflected(emission, Vec3d(limits.specular ? 1 : 0));
-      tree = largest(tree, shines + ambient + product(limits.light, light.of_points));
+      const Vec3d seen = shines + ambient + product(limits.light, light.of_points);
+      tree = largest(tree, interreflected(seen, limits.transmitted));
+      transmitted = largest(transmitted, limits.transmitted);
       const Vec3d own = emission + product(limits.light, light.of_extents);
       paths = largest(paths, interreflected(own, limits.albedo));
       distributed = largest(distributed, interreflected(own + ambient, limits.albedo));
@@ -87,9 +98,9 @@ void find_radiance_ranges(const Scene& scene, const std::vector<bool>& used, Sce
     distributed = largest(distributed, color);
     paths = largest(paths, color);
   }
-  facts.tree_radiance = {Vec3d(0), tree};
-  facts.distributed_radiance = {Vec3d(0), distributed};
-  facts.path_radiance = {Vec3d(0), paths};
+  facts.tree_radiance = {Vec3d(0), amplified(tree, transmitted)};
+  facts.distributed_radiance = {Vec3d(0), amplified(distributed, transmitted)};
+  facts.path_radiance = {Vec3d(0), amplified(paths, transmitted)};
 }
 
 }  // namespace orrery

@@ -17,7 +17,8 @@ namespace orrery {
   add(plastic)                \
   add(metallic_roughness)     \
   add(cook_torrance)          \
-  add(translucent)
+  add(translucent)            \
+  add(transparent)
 // clang-format on
 
 #define ORRERY_DECLARE(name) MaterialType name##_type();

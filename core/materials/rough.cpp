@@ -113,6 +113,15 @@ class RoughKernel final : public MaterialRecords<Rough, T> {
 
 }  // namespace
 
+template struct Rough<double>;
+
+MaterialKernelPtr<float> make_rough_kernel(float, std::span<const Rough<double>> records, int first) {
+  return std::make_unique<RoughKernel<float>>(records, first);
+}
+MaterialKernelPtr<double> make_rough_kernel(double, std::span<const Rough<double>> records, int first) {
+  return std::make_unique<RoughKernel<double>>(records, first);
+}
+
 MaterialType rough_type() {
   return {"rough", "Ambient and Lambert diffuse terms with a Phong or Blinn-Phong highlight.",
           make_material_set<Rough, RoughKernel>};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <numbers>
+#include <span>
 
 #include "core/math/elementary.h"
 #include "core/math/hemisphere.h"
@@ -96,6 +97,10 @@ struct Rough {
     return normalize(select(phong > zero, direction, mirrored_about(direction)));
   }
 };
+
+// Returns a kernel of these materials, numbered from `first`, for materials that add other lobes.
+MaterialKernelPtr<float> make_rough_kernel(float, std::span<const Rough<double>> records, int first);
+MaterialKernelPtr<double> make_rough_kernel(double, std::span<const Rough<double>> records, int first);
 
 // Returns H = (L + V) / |L + V|, or the zero vector if L = -V.
 template <class N>

@@ -44,6 +44,7 @@ class MediaList {
  public:
   static constexpr int kMax = 16;
 
+  bool empty() const { return count_ == 0; }
   bool contains(std::int32_t body) const { return std::find(begin(), end(), body) != end(); }
   void enter(std::int32_t body) {
     if (contains(body)) return;

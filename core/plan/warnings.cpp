@@ -246,7 +246,7 @@ int smooth_primitive(const Scene& scene) {
   for (const auto& set : scene.materials) {
     const MaterialTraits traits = set->traits();
     for (int i = 0; i < set->size(); ++i)
-      smooth.push_back(traits.mirrors && (!traits.lit || set->mirrored_share(i) > 0));
+      smooth.push_back(traits.mirrors && (!traits.lit || traits.straight || set->mirrored_share(i) > 0));
   }
   const int last = std::min(scene.primitive_count(), kMaxPrimitives);
   for (int p = 0; p < last; ++p)
@@ -280,18 +280,31 @@ Problem lost_caustic(const Scene& scene, const Plan& plan) {
   return {};
 }
 
+// Returns a warning about the material that creates most energy, or an empty one. Ray trees follow only
+// mirrored and transmitted rays, so that they create energy only at materials with such rays.
+Problem created_energy(const Scene& scene, const Plan& plan) {
+  const bool followed = plan.specular && plan.technique->secondary_rays;
+  if (plan.technique->draws_light && scene.facts.max_albedo.value > scene.facts.max_followed_albedo.value) {
+    const LocatedValue& most = scene.facts.max_albedo;
+    if (most.value > kMaxReflected)
+      return {most.where + "/material",
+              "material reflects up to " + percents(most.value) +
+                  " of the incoming light; plastic and non-strict metallic-roughness conserve energy"};
+  }
+  const LocatedValue& most = scene.facts.max_followed_albedo;
+  if ((!followed && !plan.technique->draws_light) || most.value <= kMaxReflected) return {};
+  return {most.where + "/material",
+          "material reflects and transmits up to " + percents(most.value) + " of the incoming light"};
+}
+
 std::vector<Problem> warnings(const Scene& scene, const Plan& plan, bool empty) {
   std::vector<Problem> found;
   if (is_unlit(scene, plan))
     found.push_back({"/lights", "scene has no light source and no ambient light; every surface is black"});
   if (!plan.camera->parallel() && is_enclosed(scene, plan))
     found.push_back({"/camera/eye", "camera is inside an opaque shape that contains no light"});
-  const LocatedValue& most = scene.facts.max_albedo;
-  if (plan.technique->draws_light && most.value > kMaxReflected)
-    found.push_back(
-        {most.where + "/material",
-         "material reflects up to " + percents(most.value) +
-             " of the incoming light; plastic and non-strict metallic-roughness conserve energy"});
+  if (Problem creates = created_energy(scene, plan); !creates.detail.empty())
+    found.push_back(std::move(creates));
   if (Problem lost = lost_caustic(scene, plan); !lost.detail.empty()) found.push_back(std::move(lost));
   if (empty) found.push_back({"/camera", "nothing is in view; the image shows only the background"});
   return found;

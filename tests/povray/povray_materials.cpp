@@ -70,6 +70,28 @@ Material refractive(const Json& m) {
       true};
 }
 
+// POV-Ray multiplies ambient and diffuse light by 1 - transmit - filter, but no highlight, which is
+// interpolated transparency. `filter` is multiplied by the pigment. Filtered transparency is therefore
+// exported with Ct as the pigment, and only if kd is a multiple of Ct.
+Material transparent(const Json& m) {
+  const double kt = m.value("kt", 0.5);
+  const Vec3d kd = coefficient_of(m, "kd", Vec3d(0.8)) * vector_of(m, "diffuse_color", Vec3d(1));
+  if (m.contains("ka")) throw UnsupportedFeature("cannot export transparency: ka must be kd");
+  if (m.value("blend", "interpolated") == "interpolated") {
+    const Material front = rough(m);
+    const std::string pigment = "pigment { rgb " + text(kd);
+    return {pigment + " transmit " + text(kt) + front.modifiers.substr(pigment.size()), true};
+  }
+  const Vec3d ct = vector_of(m, "transmission_color", Vec3d(1)), share = ratio(kd, ct);
+  if (std::abs(share.x - share.y) > 1e-12 || std::abs(share.y - share.z) > 1e-12 || m.contains("ks") ||
+      kt >= 1)
+    throw UnsupportedFeature("cannot export filter: requires kd as a multiple of Ct, no ks, and kt below 1");
+  const std::string own = text(share.x / (1 - kt));
+  return {"pigment { rgb " + text(ct) + " filter " + text(kt) + " } finish { diffuse " + own +
+              " ambient rgb " + own + " } ",
+          true};
+}
+
 }  // namespace
 
 Material material_of(const Json& material) {
@@ -77,6 +99,7 @@ Material material_of(const Json& material) {
   if (type == "rough") return rough(material);
   if (type == "reflective") return reflective(material);
   if (type == "refractive") return refractive(material);
+  if (type == "transparent") return transparent(material);
   throw UnsupportedFeature("cannot export material of type " + type);
 }
 

@@ -54,6 +54,8 @@ const Case kCases[] = {
     {"highlights", "tests/povray/scenes/highlights.json"},
     {"glass", "tests/povray/scenes/glass.json"},
     {"filter", "tests/povray/scenes/filter.json"},
+    {"transparency", "tests/povray/scenes/transparency.json"},
+    {"nested_media", "tests/povray/scenes/nested_media.json"},
     {"mesh", "tests/povray/scenes/mesh.json"},
     {"corridor", "tests/povray/scenes/corridor.json"},
     {"corridor_of_depth_2", "tests/povray/scenes/corridor.json", depth_request(2)},
