@@ -18,7 +18,8 @@ namespace orrery {
   add(metallic_roughness)     \
   add(cook_torrance)          \
   add(translucent)            \
-  add(transparent)
+  add(transparent)            \
+  add(hall)
 // clang-format on
 
 #define ORRERY_DECLARE(name) MaterialType name##_type();

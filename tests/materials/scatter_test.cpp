@@ -266,13 +266,19 @@ TEST_P(Scattering, StaysFiniteForMillionPoints) {
 INSTANTIATE_TEST_SUITE_P(Materials, Scattering, testing::ValuesIn(kMaterials),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 
-// Paints. Their highlights are not limited by energy conservation.
+// Paints and other materials that are not reciprocal or create energy.
 const Material kPaints[] = {
     {"Paint", "{'type': 'rough', 'kd': [0.5, 0.2, 0], 'ks': 0.5, 'shininess': 30}"},
     {"PhongPaint",
      "{'type': 'rough', 'kd': 0.5, 'ks': [0.1, 0.5, 0.2], 'shininess': 12, 'shading': 'phong'}"},
     {"FaintHighlight", "{'type': 'rough', 'kd': 0.5, 'ks': 0.5, 'shininess': 0.5}"},
     {"HighlightAlone", "{'type': 'rough', 'kd': 0, 'ks': 0.5, 'shininess': 100}"},
+    {"InterpolatedPane", "{'type': 'transparent', 'kd': [0.5, 0.2, 0], 'ks': 0.5, 'kt': 0.4}"},
+    {"FilteredPane",
+     "{'type': 'transparent', 'kd': 0.5, 'blend': 'filtered', 'kt': 1.5, 'transmission_color': [1, 0.5, 0], 'ks': 0.3}"},
+    {"ClearHall", "{'type': 'hall', 'kd': [0.3, 0.2, 0], 'kt_diffuse': 0.3, 'shininess': 9}", 1, 1.5},
+    {"ClearHallFromInside", "{'type': 'hall', 'kd': 0.3, 'kt_diffuse': 0.3, 'shininess': 9}", -1, 1.5},
+    {"OpaqueHall", "{'type': 'hall', 'kd': 0.3, 'ks': 0.5, 'kt': 0, 'ior': 3, 'shininess': 30}"},
 };
 std::vector<Material> materials_and_paints() {
   std::vector<Material> all(std::begin(kMaterials), std::end(kMaterials));
@@ -320,8 +326,8 @@ TEST_P(MaterialLobes, SamplesInProportionToDensity) {
   covers("light-24");
   constexpr int kDraws = 200'000;
   std::vector<Lobes> asked = parts();
-  if (std::string_view(GetParam().text).find("'rough'") != std::string_view::npos)
-    asked.push_back(Lobes::all);
+  const auto is_paint = [](const Material& paint) { return paint.name == std::string_view(GetParam().name); };
+  if (std::any_of(std::begin(kPaints), std::end(kPaints), is_paint)) asked.push_back(Lobes::all);
   for (const Lobes lobes : asked) {
     const Case point = seen_from(viewer(2), GetParam().side);
     const auto drawn = material_.sampled(point, kDraws, 2, lobes);
