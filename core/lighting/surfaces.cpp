@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/lighting/textures.h"
+
 namespace orrery {
 namespace {
 
@@ -54,6 +56,7 @@ void add_fields(const Geometry<T>& geometry, const SurfaceFields& fields, const 
   if (fields.footprint) find_footprints(paths, met, hits, surface);
   if (fields.travelled)
     for (const int i : met) surface.travelled.put(i, hits.t.at(i));
+  if (geometry.textures) geometry.textures->apply(geometry, paths, met, hits, surface);
 }
 
 template <class T>

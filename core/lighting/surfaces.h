@@ -35,7 +35,8 @@ void find_materials(const Geometry<T>& geometry, const HitBatch<T>& hits, int i,
 template <class T>
 LaneGroups start_surfaces(const Geometry<T>& geometry, const LaneGroups& groups, const HitBatch<T>& hits,
                           SurfaceBatch<T>& surface, Vec3Array<T>& radiance);
-// Sets the requested optional fields of every hit in `met`. REQUIRES: positions and normals are set.
+// Sets the requested optional fields of every hit in `met`, and evaluates textures. REQUIRES: positions and
+// normals are set.
 template <class T>
 void add_fields(const Geometry<T>& geometry, const SurfaceFields& fields, const PathBatch<T>& paths,
                 const LaneGroups& met, HitBatch<T>& hits, SurfaceBatch<T>& surface);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/task_scope.h"
+#include "core/lighting/texture_fields.h"
 #include "core/load/radiance_range.h"
 #include "core/load/spacing.h"
 #include "core/model/object_pointer.h"
@@ -158,6 +159,7 @@ SceneFacts gather_facts(const Scene& scene) {
   add_atmosphere(scene, facts);
   const std::vector<std::int32_t> first_user = find_first_users(scene);
   add_materials(scene, first_user, facts);
+  facts.materials.fields |= texture_fields(scene);
   std::vector<bool> used;
   for (const std::int32_t primitive : first_user) used.push_back(primitive >= 0);
   find_radiance_ranges(scene, used, facts);

@@ -14,11 +14,14 @@
 #include "core/lights/registry.h"
 #include "core/load/facts.h"
 #include "core/load/media.h"
+#include "core/materials/material_params.h"
 #include "core/materials/registry.h"
 #include "core/params/motion.h"
 #include "core/plan/limits.h"
 #include "core/plan/options.h"
 #include "core/shapes/registry.h"
+#include "core/textures/mapping.h"
+#include "core/textures/registry.h"
 
 namespace orrery {
 namespace {
@@ -64,29 +67,32 @@ void read_camera(Params& p, Scene& scene) {
     p.fail("up", "must not be parallel to the view direction");
 }
 
-// Asset source that loads each mesh once, even if the scene names it several times. Images are not cached,
-// because a scene names at most one image.
-class CachedMeshSource final : public AssetSource {
+// Asset source that loads each mesh and image once, even if the scene names it several times.
+class CachedAssetSource final : public AssetSource {
  public:
-  explicit CachedMeshSource(const AssetSource& from) : from_(from) {}
+  explicit CachedAssetSource(const AssetSource& from) : from_(from) {}
   TriangleMesh mesh_file(const std::string& name) const override {
     return once(files_, name, [&] { return from_.mesh_file(name); });
   }
   TriangleMesh mesh_asset(const std::string& sha256) const override {
     return once(assets_, sha256, [&] { return from_.mesh_asset(sha256); });
   }
-  TexelsPtr picture_file(const std::string& name) const override { return from_.picture_file(name); }
-  TexelsPtr picture_asset(const std::string& sha256) const override { return from_.picture_asset(sha256); }
+  TexelsPtr picture_file(const std::string& name) const override {
+    return once(picture_files_, name, [&] { return from_.picture_file(name); });
+  }
+  TexelsPtr picture_asset(const std::string& sha256) const override {
+    return once(picture_assets_, sha256, [&] { return from_.picture_asset(sha256); });
+  }
 
  private:
-  using Meshes = std::map<std::string, TriangleMesh>;
-  template <class Read>
-  static const TriangleMesh& once(Meshes& meshes, const std::string& name, const Read& read) {
-    const auto known = meshes.find(name);
-    return known != meshes.end() ? known->second : meshes.emplace(name, read()).first->second;
+  template <class Asset, class Read>
+  static const Asset& once(std::map<std::string, Asset>& assets, const std::string& name, const Read& read) {
+    const auto known = assets.find(name);
+    return known != assets.end() ? known->second : assets.emplace(name, read()).first->second;
   }
   const AssetSource& from_;
-  mutable Meshes files_, assets_;
+  mutable std::map<std::string, TriangleMesh> files_, assets_;
+  mutable std::map<std::string, TexelsPtr> picture_files_, picture_assets_;
 };
 
 // Reads the objects of a scene or model and records the material of each object.
@@ -194,6 +200,8 @@ class SceneReader {
         if (p.has(hidden))
           p.fail(hidden, std::string("cannot be used with ") + scene_->atmosphere->type() +
                              ", whose colour rays that leave the scene receive");
+    p.each_named("textures", "Textures by name, which parameters of materials may use.", {0, kMaxTextures},
+                 [&](const std::string& name, Params& t) { read_texture(name, t); });
     p.each_named("materials", "Materials by name.", {},
                  [&](const std::string& name, Params& m) { read_material(name, m); });
     p.each("lights", "Light sources.", {0, kMaxLights}, [&](Params& l) { read_light(l); });
@@ -242,18 +250,37 @@ class SceneReader {
     int index;  // within the set
     Vec3d emission;
     std::string name;
+    std::vector<TextureUse> uses;  // without material numbers
   };
+
+  void read_texture(const std::string& name, Params& p) {
+    checkpoint();
+    const auto type = p.pick("type", "Texture type.", choices_of(texture_types()));
+    texture_names_.names.add(name);
+    PlacedTexture& placed = scene_->textures.emplace_back();
+    texture_names_.bounds.emplace_back();
+    if (!type) return;
+    placed.name = name;
+    placed.type = texture_types()[*type].name;
+    placed.texture = texture_types()[*type].read(p, assets_);
+    placed.mapping = read_mapping(p);
+    placed.filtered = p.choice("filter", "Average over the pixel, or the value at the centre of the pixel.",
+                               {"pixel", "none"}, "pixel") == "pixel";
+    if (placed.texture) texture_names_.bounds.back() = placed.texture->bounds();
+  }
 
   void read_material(const std::string& name, Params& p) {
     const auto type = p.pick("type", "Material type.", choices_of(material_types()));
     names_.add(name);
-    if (!type) return places_.push_back({0, 0, {}, name});
+    if (!type) return places_.push_back({0, 0, {}, name, {}});
     MaterialSet& set = *scene_->materials[*type];
     const int index = set.size();
-    set.add(p);
+    set.add(p, texture_names_);
     const Vec3d emission =
         p.color("emission", "Radiance that surfaces emit on both sides, per channel.", Vec3d(0));
-    places_.push_back({*type, index, emission, name});
+    std::vector<TextureUse> uses = set.texture_uses(index);
+    read_bump(p, texture_names_, uses);
+    places_.push_back({*type, index, emission, name, std::move(uses)});
   }
 
   void read_environment(Params& p) {
@@ -297,11 +324,17 @@ class SceneReader {
       first[set] = first[set - 1] + scene_->materials[set - 1]->size();
     scene_->emission.resize(static_cast<std::size_t>(first.back() + scene_->materials.back()->size()));
     scene_->material_names.resize(scene_->emission.size());
-    for (const auto& [set, index, emission, name] : places_) {
-      const auto number = static_cast<std::size_t>(first[set] + index);
-      scene_->emission[number] = emission;
-      scene_->material_names[number] = name;
+    for (const auto& [set, index, emission, name, uses] : places_) {
+      const int material = first[set] + index;
+      scene_->emission[static_cast<std::size_t>(material)] = emission;
+      scene_->material_names[static_cast<std::size_t>(material)] = name;
+      for (TextureUse use : uses) {
+        use.material = material;
+        scene_->texture_uses.push_back(use);
+      }
     }
+    std::stable_sort(scene_->texture_uses.begin(), scene_->texture_uses.end(),
+                     [](const TextureUse& a, const TextureUse& b) { return a.material < b.material; });
     const auto number = [&](const ObjectReader& objects, std::vector<std::int32_t>& into) {
       objects.for_each([&](std::size_t name, std::size_t primitives, std::int32_t) {
         const MaterialPlace place = places_[name];
@@ -354,9 +387,10 @@ class SceneReader {
     scene_->motion = {*first, *last};
   }
 
-  const CachedMeshSource assets_;
+  const CachedAssetSource assets_;
   MeshSource meshes_{assets_};  // shared by the scene and its models
   std::shared_ptr<Scene> scene_;
+  TextureNames texture_names_;
   Names names_{"material"};
   std::vector<MaterialPlace> places_;  // by index of the material name
   ObjectReader objects_;

@@ -4,22 +4,20 @@
 
 namespace orrery {
 
-template <class N>
-CookTorrance<double> CookTorrance<N>::read(Params& p) {
-  const Vec3d n = p.color("n", "Index of refraction of the facets, per channel.", Vec3d(1.5));
-  const Vec3d k = p.color("k", "Extinction coefficient of the facets, per channel.", Vec3d(0));
-  const Vec3d diffuse = p.coefficient("diffuse", "Diffuse reflectance, 0 to 1 per channel.", Vec3d(0), 1);
-  const Vec3d specular =
-      p.coefficient("specular", "Weight of the facet reflection, 0 to 1 per channel; default: 1 - diffuse.",
-                    Vec3d(1) - diffuse, 1);
-  const double slope = p.number("slope", "RMS slope of the facets.", {.min = 0.01, .max = 1}, 0.3);
-  const double most = max_component(diffuse + specular);
-  if (most > 1)
-    p.fail("specular",
-           "specular + diffuse must be at most 1 in every channel (got " + number_text(most) + ")");
-  CookTorrance<double> found{n, k, diffuse, specular, slope, 0};
-  found.chance = lobe_chance(max_component(specular * found.reflectance(0.7)), max_component(diffuse));
-  return found;
+template <>
+void CookTorranceInputs<double>::read(MaterialParams& p) {
+  p.color(n, "n", "Index of refraction of the facets, per channel.", Vec3d(1.5));
+  p.color(k, "k", "Extinction coefficient of the facets, per channel.", Vec3d(0));
+  p.coefficient(diffuse, "diffuse", "Diffuse reflectance, 0 to 1 per channel.", Vec3d(0), 1);
+  p.coefficient_like(specular, "specular",
+                     "Weight of the facet reflection, 0 to 1 per channel; default: 1 - diffuse.", diffuse, -1,
+                     1, 1);
+  p.number(slope, "slope", "RMS slope of the facets.", {.min = 0.01, .max = 1}, 0.3);
+  const bool follows = !p.plain().has("specular");
+  const double most = max_component(p.most(diffuse) + p.most(specular));
+  if (most > 1 && !follows)
+    p.plain().fail("specular",
+                   "specular + diffuse must be at most 1 in every channel (got " + number_text(most) + ")");
 }
 
 namespace {

@@ -7,6 +7,10 @@
 
 namespace orrery {
 
+class MaterialParams;
+template <class N>
+struct CookTorranceInputs;
+
 // Cook-Torrance model ("A Reflectance Model for Computer Graphics", TOG 1982): a diffuse lobe plus facets in
 // V-shaped grooves with Beckmann-distributed slopes. Light reflected between facets is lost, as in the paper.
 template <class N>
@@ -17,7 +21,8 @@ struct CookTorrance {
   N slope;           // root mean square slope of the facets
   N chance;          // probability of sampling a facet, with Lobes::all
 
-  static CookTorrance<double> read(Params& p);
+  template <class M>
+  using Inputs = CookTorranceInputs<M>;
   MaterialTraits traits() const {
     return {.lit = true, .glossy = true, .diffuse = true, .non_diffuse = true};
   }
@@ -83,6 +88,22 @@ struct CookTorrance {
     return {
         select(mirrors, mirrored_about(viewer, facet), cosine_direction(Vec3<N>(zero, zero, one), u, draw.v)),
         MaskOf<N>(false)};
+  }
+};
+
+// Parameters of a CookTorrance material.
+template <class N>
+struct CookTorranceInputs {
+  Vec3<N> n, k, diffuse, specular;
+  N slope;
+
+  void read(MaterialParams& p);
+  CookTorrance<N> record() const {
+    using T = ScalarOf<N>;
+    CookTorrance<N> found{n, k, diffuse, specular, slope, N(T(0))};
+    found.chance =
+        lobe_chance(N(max_component(specular * found.reflectance(N(T(0.7))))), N(max_component(diffuse)));
+    return found;
   }
 };
 

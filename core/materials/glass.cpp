@@ -30,27 +30,37 @@ FacetAlbedo<double> lossless_albedo(double alpha, double far_index) {
 // The transmitted fractions of multiple scattering follow from the mean Fresnel reflectance F. They are
 // scaled so that both are at most 1 and f / n^2 is symmetric: see Glass. F is computed on the optically
 // thinner side, which has no total reflection. n^2 (1 - F) is equal on both sides.
-template <class N>
-Glass<double> Glass<N>::read(Params& p) {
-  const double ior = p.number("ior", "Index of refraction; air: 1.", {.min = 0.1, .max = 10}, 1.5);
-  const double roughness = p.number(
-      "roughness", "Roughness from 0 (smooth) to 1; its square is the alpha of the GGX distribution.",
-      {.min = 0, .max = 1}, 0.0);
-  const Vec3d filter =
-      p.color("filter", "Transmittance after one metre inside, 0 to 1 per channel.", Vec3d(1), 1);
-  Glass<double> glass{};
-  glass.body = {ior, normal_reflectance(ior, 0.0), 1.0, log2_filter_of(filter), read_priority(p)};
-  const double alpha = roughness * roughness;
-  if (alpha < kMinAlpha || alpha * spread_by_index(ior) < kMinSpread) return glass;
-  glass.alpha = alpha;
-  glass.outside = lossless_albedo(alpha, ior);
-  glass.inside = lossless_albedo(alpha, 1 / ior);
-  const double outside = 1 - glass.outside.mean, inside = 1 - glass.inside.mean;
+template <>
+void GlassInputs<double>::tabulate(double of_roughness) {
+  alpha = of_roughness * of_roughness;
+  if (alpha < kMinAlpha || alpha * spread_by_index(ior) < kMinSpread) {
+    alpha = 0;
+    return;
+  }
+  outside = lossless_albedo(alpha, ior);
+  inside = lossless_albedo(alpha, 1 / ior);
+  const double left_outside = 1 - outside.mean, left_inside = 1 - inside.mean;
   const double passes = ior > 1 ? 1 - mean_dielectric(1 / ior) : (1 - mean_dielectric(ior)) * ior * ior;
-  const double most = std::max({outside, inside, std::numeric_limits<double>::min()});
-  glass.through_outside = passes * inside / most;
-  glass.through_inside = passes / (ior * ior) * outside / most;
-  return glass;
+  const double most = std::max({left_outside, left_inside, std::numeric_limits<double>::min()});
+  through_outside = passes * left_inside / most;
+  through_inside = passes / (ior * ior) * left_outside / most;
+}
+
+template <>
+void GlassInputs<double>::read(MaterialParams& p) {
+  ior = p.plain().number("ior", "Index of refraction; air: 1.", {.min = 0.1, .max = 10}, 1.5);
+  p.number(roughness, "roughness",
+           "Roughness from 0 (smooth) to 1; its square is the alpha of the GGX distribution.",
+           {.min = 0, .max = 1}, 0.0);
+  priority = read_priority(p.plain());
+  p.color(filter, "filter", "Transmittance after one metre inside, 0 to 1 per channel.", Vec3d(1), 1);
+  if (p.raise_texture(roughness, kMinTexturedRoughness)) {
+    roughness = kMinTexturedRoughness;
+    if (kMinAlpha * spread_by_index(ior) < kMinSpread)
+      p.plain().fail("roughness", "cannot be textured if ior is from 0.933 to 1.071 (got " +
+                                      number_text(ior) + "), because such glass is smooth");
+  }
+  tabulate(roughness);
 }
 
 namespace {

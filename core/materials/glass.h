@@ -7,6 +7,10 @@
 
 namespace orrery {
 
+class MaterialParams;
+template <class N>
+struct GlassInputs;
+
 // Glass of microfacets that mirror and refract (Walter, Marschner, Li, Torrance, "Microfacet Models for
 // Refraction through Rough Surfaces", EGSR 2007), with exact Fresnel equations. Light scattered between
 // facets leaves on both sides in lobes after Kulla and Conty (SIGGRAPH course, 2017), so that no light is
@@ -24,7 +28,8 @@ struct Glass {
   // Transmitted fractions of multiply scattered light that arrives from outside and from inside.
   N through_outside, through_inside;
 
-  static Glass<double> read(Params& p);
+  template <class M>
+  using Inputs = GlassInputs<M>;
   MaterialTraits traits() const {
     const bool filters = body.log2_filter != Vec3<N>(N(0)), is_rough = alpha > 0;
     return {.lit = is_rough,
@@ -157,6 +162,28 @@ struct Glass {
     chosen.scale = select(mask, yes.scale, no.scale);
     chosen.mean = select(mask, yes.mean, no.mean);
     return chosen;
+  }
+};
+
+// Parameters of a Glass material, and the albedos of its facets.
+template <class N>
+struct GlassInputs {
+  Vec3<N> filter;
+  N ior, roughness, priority;
+  N alpha;
+  FacetAlbedo<N> outside, inside;
+  N through_outside, through_inside;
+
+  void read(MaterialParams& p);
+  void tabulate(double roughness);
+  Glass<N> record() const {
+    const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1));
+    return {{ior, normal_reflectance(ior, zero), one, log2_filter_of(filter), priority},
+            alpha,
+            outside,
+            inside,
+            through_outside,
+            through_inside};
   }
 };
 

@@ -126,7 +126,8 @@ struct Hall {
     // Highlights may be seen where rays are not mirrored or refracted.
     const N near =
         (with_diffuse(lobes) ? max_component(diffuse) : zero) + max_component(specular) / (shininess + one);
-    const N far = max_component(diffuse_transmission) + max_component(transmission) / (transmitted_shininess + one);
+    const N far =
+        max_component(diffuse_transmission) + max_component(transmission) / (transmitted_shininess + one);
     return {lobe_chance(N(back + on), N(near + far)), lobe_chance(back, on), lobe_chance(far, near)};
   }
 

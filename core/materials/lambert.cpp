@@ -5,9 +5,9 @@
 
 namespace orrery {
 
-template <class N>
-Lambert<double> Lambert<N>::read(Params& p) {
-  return {p.coefficient("reflectance", "Diffuse reflectance, 0 to 1 per channel.", Vec3d(0.8), 1)};
+template <>
+void Lambert<double>::read(MaterialParams& p) {
+  p.coefficient(reflectance, "reflectance", "Diffuse reflectance, 0 to 1 per channel.", Vec3d(0.8), 1);
 }
 
 namespace {

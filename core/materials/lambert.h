@@ -5,12 +5,18 @@
 
 namespace orrery {
 
+class MaterialParams;
+
 // Lambertian reflection: the reflected radiance is the same in all directions (Lambert, Photometria, 1760).
 template <class N>
 struct Lambert {
   Vec3<N> reflectance;
 
-  static Lambert<double> read(Params& p);
+  template <class M>
+  using Inputs = Lambert<M>;
+  void read(MaterialParams& p);
+  Lambert record() const { return *this; }
+
   MaterialTraits traits() const { return {.lit = true, .diffuse = true}; }
   ReflectionLimits limits() const { return {reflectance, reflectance, reflectance}; }
 

@@ -12,56 +12,41 @@
 namespace orrery {
 namespace {
 
-// Returns the cosine-weighted mean reflectance over the hemisphere: the integral of 2 mu F(mu).
-double mean_reflectance(double n, double k) {
-  constexpr int kSteps = 256;
-  double sum = 0;
-  for (int i = 0; i < kSteps; ++i) {
-    const double mu = (i + 0.5) / kSteps;
-    sum += 2 * mu * fresnel_conductor(n, k, mu);
-  }
-  return sum / kSteps;
-}
-
 // Reads the index of refraction and the extinction coefficient, as numbers or by the name of a metal.
-std::pair<Vec3d, Vec3d> read_indices(Params& p) {
-  if (p.form({{"n", "k"}, {"name"}}) == 0) {
-    const Vec3d n = p.color("n", "Index of refraction, per channel.");
-    const Vec3d k = p.color("k", "Extinction coefficient, per channel.");
-    return {n, k};
+void read_indices(MaterialParams& p, MetalInputs<double>& into) {
+  if (p.plain().form({{"n", "k"}, {"name"}}) == 0) {
+    p.color(into.n, "n", "Index of refraction, per channel.");
+    p.color(into.k, "k", "Extinction coefficient, per channel.");
+    return;
   }
   std::array<std::string_view, kMetals> names;
   std::transform(metal_indices().begin(), metal_indices().end(), names.begin(),
                  [](const MetalIndices& metal) { return metal.name; });
-  const std::string name = p.choice("name", "Metal with measured indices.", names);
+  const std::string name = p.plain().choice("name", "Metal with measured indices.", names);
   const auto known = std::find(names.begin(), names.end(), name) - names.begin();
   const MetalIndices& metal = metal_indices()[static_cast<std::size_t>(known) % kMetals];
-  return {metal.n, metal.k};
+  into.n = metal.n;
+  into.k = metal.k;
 }
 
 }  // namespace
+template <>
+void MetalInputs<double>::tabulate(double of_roughness) {
+  alpha = of_roughness * of_roughness;
+  if (alpha < kMinAlpha)
+    alpha = 0;
+  else
+    albedo = ggx_albedo(alpha);
+}
 
-template <class N>
-Metal<double> Metal<N>::read(Params& p) {
-  const auto [n, k] = read_indices(p);
-  const double roughness = p.number(
-      "roughness", "Roughness from 0 (smooth) to 1; its square is the alpha of the GGX distribution.",
-      {.min = 0, .max = 1}, 0.3);
-  Metal<double> metal{n, k, {}, roughness * roughness, {}, {}};
-  metal.f0 = metal.reflectance(1);
-  if (metal.alpha < kMinAlpha) {
-    metal.alpha = 0;
-    return metal;
-  }
-  metal.albedo = ggx_albedo(metal.alpha);
-  const double mean = metal.albedo.mean;
-  if (mean == 1) return metal;
-  const auto scale = [&](double mean_f) {
-    return multiple_scattering_reflectance(mean_f, mean) / (1 - mean);
-  };
-  metal.multiple_scale = {scale(mean_reflectance(n.x, k.x)), scale(mean_reflectance(n.y, k.y)),
-                          scale(mean_reflectance(n.z, k.z))};
-  return metal;
+template <>
+void MetalInputs<double>::read(MaterialParams& p) {
+  p.number(roughness, "roughness",
+           "Roughness from 0 (smooth) to 1; its square is the alpha of the GGX distribution.",
+           {.min = 0, .max = 1}, 0.3);  // before n and k, which are not always read: see MaterialParams
+  if (p.raise_texture(roughness, kMinTexturedRoughness)) roughness = kMinTexturedRoughness;
+  read_indices(p, *this);
+  tabulate(roughness);
 }
 
 namespace {

@@ -10,6 +10,10 @@
 
 namespace orrery {
 
+class MaterialParams;
+template <class N>
+struct MetalInputs;
+
 // Metal of microfacets, coloured by Fresnel's equations. Light scattered between facets is restored by the
 // lobe of Kulla and Conty ("Revisiting Physically Based Shading at Imageworks", SIGGRAPH course, 2017). A
 // metal that mirrors all light therefore has albedo 1 at any roughness. With alpha 0, the metal is a smooth
@@ -22,7 +26,8 @@ struct Metal {
   GgxAlbedo<N> albedo;
   Vec3<N> multiple_scale;  // F_ms / (1 - mean albedo)
 
-  static Metal<double> read(Params& p);
+  template <class M>
+  using Inputs = MetalInputs<M>;
   MaterialTraits traits() const {
     return {.lit = alpha > 0, .mirrors = !(alpha > 0), .glossy = alpha > 0, .non_diffuse = true};
   }
@@ -68,8 +73,50 @@ struct Metal {
 
 // Returns F_ms of Kulla and Conty, the sum over all bounces: F^2 E / (1 - F (1 - E)). F is the mean
 // reflectance of the metal, E the mean albedo of facets that mirror all light.
-inline double multiple_scattering_reflectance(double mean_reflectance, double mean_albedo) {
-  return mean_reflectance * mean_reflectance * mean_albedo / (1 - mean_reflectance * (1 - mean_albedo));
+template <class N>
+N multiple_scattering_reflectance(const N& mean_reflectance, const N& mean_albedo) {
+  const N one(ScalarOf<N>(1));
+  return mean_reflectance * mean_reflectance * mean_albedo / (one - mean_reflectance * (one - mean_albedo));
 }
+
+// Parameters of a Metal material, and the albedo of its facets.
+template <class N>
+struct MetalInputs {
+  Vec3<N> n, k;
+  N roughness;
+  N alpha;
+  GgxAlbedo<N> albedo;
+
+  void read(MaterialParams& p);
+  void tabulate(double roughness);
+  Metal<N> record() const {
+    const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1));
+    Metal<N> metal{n, k, {}, alpha, albedo, {}};
+    metal.f0 = metal.reflectance(one);
+    const auto rough = alpha > zero && albedo.mean < one;
+    if (!any(rough)) return metal;
+    const auto scale = [&](const N& mean_f) {
+      const N lost = select(rough, N(one - albedo.mean), one);
+      return select(rough, N(multiple_scattering_reflectance(mean_f, albedo.mean) / lost), zero);
+    };
+    metal.multiple_scale = {scale(mean_reflectance(n.x, k.x)), scale(mean_reflectance(n.y, k.y)),
+                            scale(mean_reflectance(n.z, k.z))};
+    return metal;
+  }
+
+ private:
+  // Returns the cosine-weighted mean reflectance over the hemisphere, the integral of 2 mu F(mu), by the
+  // midpoint rule. Lanes evaluate it for each surface and use fewer steps.
+  static N mean_reflectance(const N& of_n, const N& of_k) {
+    using T = ScalarOf<N>;
+    constexpr int kSteps = std::is_same_v<N, double> ? 256 : 16;
+    N sum(T(0));
+    for (int i = 0; i < kSteps; ++i) {
+      const N mu(T((i + 0.5) / kSteps));
+      sum = sum + T(2) * mu * fresnel_conductor(of_n, of_k, mu);
+    }
+    return sum / T(kSteps);
+  }
+};
 
 }  // namespace orrery

@@ -1,48 +1,28 @@
 #include "core/materials/metallic_roughness.h"
 
-#include "core/materials/metal.h"
 #include "core/params/params.h"
 
 namespace orrery {
-namespace {
+template <>
+void MetallicRoughnessInputs<double>::tabulate(double of_roughness) {
+  alpha = std::max(kMinAlpha, of_roughness * of_roughness);
+  albedo = ggx_albedo(alpha);
+  grazing = mirrored_albedo(alpha, [](double cosine) { return fresnel_schlick(0.0, cosine); });
+}
 
-constexpr double kDielectric = 0.04;  // reflectance of dielectrics along the normal
-
-double mean_schlick(double f0) { return f0 + (1 - f0) / 21; }
-
-}  // namespace
-
-template <class N>
-MetallicRoughness<double> MetallicRoughness<N>::read(Params& p) {
-  const Vec3d color = p.coefficient(
-      "base_color", "Albedo of the dielectric base, or reflectance of the metal, 0 to 1 per channel.",
-      Vec3d(0.8), 1);
-  const double metallic =
-      p.number("metallic", "Metalness: 0 for a dielectric, 1 for a metal.", {.min = 0, .max = 1}, 0.0);
-  const double roughness = p.number(
-      "roughness",
-      "Roughness from 0 (smooth) to 1; its square is the alpha of the GGX distribution, at least 0.001.",
-      {.min = 0, .max = 1}, 0.5);
-  const bool is_strict =
-      p.flag("strict", "Use the glTF 2.0 formula unchanged, although it does not conserve energy.", false);
-  MetallicRoughness<double> found{};
-  found.f0 = Vec3d(kDielectric) * (1 - metallic) + color * metallic;
-  found.base = color * (1 - metallic);
-  found.strict = is_strict ? 1 : 0;
-  found.alpha = std::max(kMinAlpha, roughness * roughness);
-  found.albedo = ggx_albedo(found.alpha);
-  found.grazing = mirrored_albedo(found.alpha, [](double cosine) { return fresnel_schlick(0.0, cosine); });
-  if (is_strict) return found;
-  const auto channel = [&](double f0, double& base, double& multiple) {
-    multiple = multiple_scattering_reflectance(mean_schlick(f0), found.albedo.mean);
-    const double all = found.albedo.mean, edge = found.grazing.mean;
-    const double left = 1 - (f0 * (all - edge) + edge) - multiple * (1 - all);
-    base = left > 0 ? base / left : 0;
-  };
-  channel(found.f0.x, found.base.x, found.multiple.x);
-  channel(found.f0.y, found.base.y, found.multiple.y);
-  channel(found.f0.z, found.base.z, found.multiple.z);
-  return found;
+template <>
+void MetallicRoughnessInputs<double>::read(MaterialParams& p) {
+  p.coefficient(base_color, "base_color",
+                "Albedo of the dielectric base, or reflectance of the metal, 0 to 1 per channel.", Vec3d(0.8),
+                1);
+  p.number(metallic, "metallic", "Metalness: 0 for a dielectric, 1 for a metal.", {.min = 0, .max = 1}, 0.0);
+  p.number(roughness, "roughness",
+           "Roughness from 0 (smooth) to 1; its square is the alpha of the GGX distribution, at least 0.001.",
+           {.min = 0, .max = 1}, 0.5);
+  if (p.raise_texture(roughness, kMinTexturedRoughness)) roughness = kMinTexturedRoughness;
+  strict = p.plain().flag("strict",
+                          "Use the glTF 2.0 formula unchanged, although it does not conserve energy.", false);
+  tabulate(roughness);
 }
 
 // Returns 1 if `strict` is 0. Otherwise returns the largest albedo for five view directions, mostly grazing

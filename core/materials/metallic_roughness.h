@@ -4,8 +4,13 @@
 #include "core/materials/fresnel.h"
 #include "core/materials/ggx_albedo.h"
 #include "core/materials/lobes.h"
+#include "core/materials/metal.h"
 
 namespace orrery {
+
+class MaterialParams;
+template <class N>
+struct MetallicRoughnessInputs;
 
 // Metallic-roughness material of glTF 2.0 (Khronos, specification, appendix B): GGX microfacets with
 // Schlick's approximation over a diffuse base. The specification's formula lets the base scatter light that
@@ -22,7 +27,8 @@ struct MetallicRoughness {
   GgxAlbedo<N> albedo;     // albedo of facets that mirror all light
   FacetAlbedo<N> grazing;  // albedo of facets that mirror the fraction (1 - cos)^5
 
-  static MetallicRoughness<double> read(Params& p);
+  template <class M>
+  using Inputs = MetallicRoughnessInputs<M>;
   MaterialTraits traits() const {
     return {.lit = true, .glossy = true, .diffuse = true, .non_diffuse = true};
   }
@@ -106,6 +112,47 @@ struct MetallicRoughness {
     return {
         select(mirrors, mirrored_about(viewer, facet), cosine_direction(Vec3<N>(zero, zero, one), u, draw.v)),
         MaskOf<N>(false)};
+  }
+};
+
+// Parameters of a MetallicRoughness material, and the albedos of its facets.
+template <class N>
+struct MetallicRoughnessInputs {
+  Vec3<N> base_color;
+  N metallic, strict, roughness;
+  N alpha;
+  GgxAlbedo<N> albedo;
+  FacetAlbedo<N> grazing;
+
+  static constexpr double kDielectric = 0.04;  // reflectance of dielectrics along the normal
+
+  void read(MaterialParams& p);
+  void tabulate(double roughness);
+  MetallicRoughness<N> record() const {
+    const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1));
+    const N dielectric(static_cast<ScalarOf<N>>(kDielectric));
+    const auto is_strict = strict > zero;
+    MetallicRoughness<N> found{Vec3<N>(dielectric) * (one - metallic) + base_color * metallic,
+                               base_color * (one - metallic),
+                               Vec3<N>(zero),
+                               strict,
+                               alpha,
+                               albedo,
+                               grazing};
+    if (all(is_strict)) return found;
+    const auto channel = [&](const N& f0, N& base, N& multiple) {
+      const N mean_f0 = f0 + (one - f0) / ScalarOf<N>(21);  // mean of Schlick's approximation
+      const N together = multiple_scattering_reflectance(mean_f0, albedo.mean);
+      const N left =
+          one - (f0 * (albedo.mean - grazing.mean) + grazing.mean) - together * (one - albedo.mean);
+      multiple = select(is_strict, zero, together);
+      const auto passes = left > zero;
+      base = select(is_strict, base, select(passes, N(base / select(passes, left, one)), zero));
+    };
+    channel(found.f0.x, found.base.x, found.multiple.x);
+    channel(found.f0.y, found.base.y, found.multiple.y);
+    channel(found.f0.z, found.base.z, found.multiple.z);
+    return found;
   }
 };
 

@@ -8,6 +8,10 @@
 
 namespace orrery {
 
+class MaterialParams;
+template <class N>
+struct OrenNayarInputs;
+
 // Rough diffuse surface of facets, such as clay or plaster: the Oren-Nayar model ("Generalization of
 // Lambert's reflectance model", SIGGRAPH 1994) as improved by Fujii. A lobe for multiple scattering between
 // facets keeps the albedo of a white surface at 1 (Portsmouth, Kutz, Hill, "EON: a practical
@@ -19,7 +23,8 @@ struct OrenNayar {
   N single_scale;          // A of Fujii's model
   Vec3<N> multiple_scale;  // factor of grazing_loss(N.L) * grazing_loss(N.V)
 
-  static OrenNayar<double> read(Params& p);
+  template <class M>
+  using Inputs = OrenNayarInputs<M>;
   MaterialTraits traits() const { return {.lit = true, .glossy = true, .diffuse = true}; }
   // Uses N.L s / t <= 1 and grazing_loss() <= kFujii: see pi_brdf().
   ReflectionLimits limits() const {
@@ -56,6 +61,27 @@ struct OrenNayar {
     const N steep = sine * (mu * (one + sine + sine * sine) / (one + sine)) - sine;
     const N g = sine * (angle - sine * mu) + steep * T(2.0 / 3);
     return max_first(zero, N(T(kFujii) - g * (1 / kPi)));
+  }
+};
+
+// Parameters of an OrenNayar material. Multiple scattering reflects the fraction rho^2 E / (1 - rho (1 - E)),
+// the sum over all bounces between facets. rho is the reflectance of a facet. E is the mean albedo of white
+// facets.
+template <class N>
+struct OrenNayarInputs {
+  Vec3<N> reflectance;
+  N roughness;
+
+  void read(MaterialParams& p);
+  OrenNayar<N> record() const {
+    using T = ScalarOf<N>;
+    constexpr T kFujii = T(OrenNayar<N>::kFujii), kMeanG = T(OrenNayar<N>::kMeanG);
+    const N one(T(1)), a = one / (one + kFujii * roughness), mean = a * (one + kMeanG * roughness);
+    const auto multiple = [&](const N& rho) {
+      return rho * rho * mean / (one - rho * (one - mean)) * (a * roughness / (kFujii - kMeanG));
+    };
+    return {reflectance, roughness, a,
+            Vec3<N>(multiple(reflectance.x), multiple(reflectance.y), multiple(reflectance.z))};
   }
 };
 

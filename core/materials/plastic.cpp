@@ -4,32 +4,29 @@
 #include "core/params/params.h"
 
 namespace orrery {
-
-// The internal reflectance of the coat for diffuse light is 1 - (1 - E) / n^2, where E is the coat's mean
-// reflectance from outside.
-template <class N>
-Plastic<double> Plastic<N>::read(Params& p) {
-  const Vec3d reflectance =
-      p.coefficient("reflectance", "Reflectance of the base, 0 to 1 per channel.", Vec3d(0.8), 1);
-  const double ior = p.number("ior", "Index of refraction of the coat, divided by the index outside.",
-                              {.min = 1, .max = 10}, 1.5);
-  const double roughness =
-      p.number("roughness",
-               "Roughness of the coat from 0 (smooth) to 1; its square is the alpha of the GGX distribution.",
-               {.min = 0, .max = 1}, 0.3);
-  Plastic<double> plastic{{}, ior, roughness * roughness, {}, 0};
-  if (plastic.alpha < kMinAlpha) {
-    plastic.alpha = 0;
-    plastic.mean = mean_dielectric(1 / ior);
-  } else {
-    plastic.mirror = mirrored_albedo(plastic.alpha, [&](double cosine) { return plastic.fresnel(cosine); });
-    plastic.mean = plastic.mirror.mean;
+template <>
+void PlasticInputs<double>::tabulate(double of_roughness) {
+  alpha = of_roughness * of_roughness;
+  if (alpha < kMinAlpha) {
+    alpha = 0;
+    mean = mean_dielectric(1 / ior);
+    return;
   }
-  const double mean = plastic.mean;
-  const double leaves = (1 - mean) / (ior * ior);
-  const auto base = [&](double rho) { return rho * leaves / (1 - rho * (1 - leaves)) / (1 - mean); };
-  plastic.base = {base(reflectance.x), base(reflectance.y), base(reflectance.z)};
-  return plastic;
+  const Plastic<double> coat{{}, ior, alpha, {}, 0};
+  mirror = mirrored_albedo(alpha, [&](double cosine) { return coat.fresnel(cosine); });
+  mean = mirror.mean;
+}
+
+template <>
+void PlasticInputs<double>::read(MaterialParams& p) {
+  p.coefficient(reflectance, "reflectance", "Reflectance of the base, 0 to 1 per channel.", Vec3d(0.8), 1);
+  ior = p.plain().number("ior", "Index of refraction of the coat, divided by the index outside.",
+                         {.min = 1, .max = 10}, 1.5);
+  p.number(roughness, "roughness",
+           "Roughness of the coat from 0 (smooth) to 1; its square is the alpha of the GGX distribution.",
+           {.min = 0, .max = 1}, 0.3);
+  if (p.raise_texture(roughness, kMinTexturedRoughness)) roughness = kMinTexturedRoughness;
+  tabulate(roughness);
 }
 
 namespace {

@@ -6,6 +6,10 @@
 
 namespace orrery {
 
+class MaterialParams;
+template <class N>
+struct PlasticInputs;
+
 // Diffuse base under a clear coat, smooth or of microfacets. The base scatters the light that the coat
 // transmits on the way in and out (Kelemen, Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF
 // Model with Importance Sampling", Eurographics 2001). The base also scatters the light that the coat
@@ -18,7 +22,8 @@ struct Plastic {
   FacetAlbedo<N> mirror;  // albedo of a rough coat
   N mean;                 // reflectance of the coat for uniform light
 
-  static Plastic<double> read(Params& p);
+  template <class M>
+  using Inputs = PlasticInputs<M>;
   MaterialTraits traits() const {
     return {.lit = true, .mirrors = !(alpha > 0), .glossy = true, .diffuse = true, .non_diffuse = true};
   }
@@ -88,6 +93,27 @@ struct Plastic {
     return {
         select(coat, mirrored_about(viewer, facet), cosine_direction(Vec3<N>(zero, zero, one), u, draw.v)),
         MaskOf<N>(false)};
+  }
+};
+
+// Parameters of a Plastic material, and the albedos of its coat. The internal reflectance of the coat for
+// diffuse light is 1 - (1 - E) / n^2, where E is the coat's mean reflectance from outside.
+template <class N>
+struct PlasticInputs {
+  Vec3<N> reflectance;
+  N ior, roughness;
+  N alpha;
+  FacetAlbedo<N> mirror;
+  N mean;
+
+  void read(MaterialParams& p);
+  void tabulate(double roughness);
+  Plastic<N> record() const {
+    const N one(ScalarOf<N>(1)), leaves = (one - mean) / (ior * ior);
+    const auto base = [&](const N& rho) -> N {
+      return rho * leaves / (one - rho * (one - leaves)) / (one - mean);
+    };
+    return {{base(reflectance.x), base(reflectance.y), base(reflectance.z)}, ior, alpha, mirror, mean};
   }
 };
 

@@ -6,15 +6,12 @@
 
 namespace orrery {
 
-template <class N>
-Reflective<double> Reflective<N>::read(Params& p) {
-  const Vec3d n = p.color("n", "Index of refraction, per channel.");
-  const Vec3d k = p.color("k", "Extinction coefficient, per channel.");
-  const bool exact =
-      p.choice("fresnel", "Reflectance formula: Schlick's approximation or Fresnel's equations.",
-               {"schlick", "exact"}, "schlick") == "exact";
-  const Vec3d f0(normal_reflectance(n.x, k.x), normal_reflectance(n.y, k.y), normal_reflectance(n.z, k.z));
-  return {n, k, f0, exact ? 1.0 : 0.0};
+template <>
+void ReflectiveInputs<double>::read(MaterialParams& p) {
+  p.color(n, "n", "Index of refraction, per channel.");
+  p.color(k, "k", "Extinction coefficient, per channel.");
+  exact = p.plain().choice("fresnel", "Reflectance formula: Schlick's approximation or Fresnel's equations.",
+                           {"schlick", "exact"}, "schlick") == "exact";
 }
 
 namespace {

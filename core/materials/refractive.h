@@ -67,9 +67,12 @@ struct Refractive {
 double read_priority(Params& p);
 
 // Returns Refractive::log2_filter for a transmittance per metre.
-inline Vec3d log2_filter_of(const Vec3d& filter) {
-  const auto log2_of = [](double x) {
-    return x < std::numeric_limits<double>::min() ? -1e30 : log2_normal(x);
+template <class N>
+Vec3<N> log2_filter_of(const Vec3<N>& filter) {
+  const auto log2_of = [](const N& x) -> N {
+    using T = ScalarOf<N>;
+    const auto opaque = x < N(std::numeric_limits<T>::min());
+    return select(opaque, N(T(-1e30)), log2_normal(select(opaque, N(T(1)), x)));
   };
   return {log2_of(filter.x), log2_of(filter.y), log2_of(filter.z)};
 }

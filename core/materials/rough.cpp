@@ -8,20 +8,22 @@
 
 namespace orrery {
 
-template <class N>
-Rough<double> Rough<N>::read(Params& p) {
-  const Vec3d kd = p.coefficient("kd", "Diffuse coefficient.", Vec3d(0.8));
-  const Vec3d ka = p.coefficient("ka", "Ambient coefficient; default: kd.", derived(kd));
-  const Vec3d ks = p.coefficient("ks", "Specular coefficient.", Vec3d(0));
-  const Vec3d cd = p.color("diffuse_color", "Colour that multiplies ka and kd.", Vec3d(1));
-  const Vec3d cs = p.color("specular_color", "Colour that multiplies ks.", Vec3d(1));
-  const double shininess = p.number("shininess", "Exponent of the highlight.", {.min = 0, .max = 1e6}, 20.0);
-  const bool phong =
-      p.choice("shading", "Highlight model.", {"blinn-phong", "phong"}, "blinn-phong") == "phong";
-  Rough<double> rough{ka * cd, kd * cd, ks * cs, shininess, phong ? 1.0 : 0.0, 0};
-  const bool alone = rough.diffuse == Vec3d(0) && rough.specular != Vec3d(0);
-  if (alone && shininess >= kMinShininess) rough.chance = 1;
-  return rough;
+template <>
+void RoughInputs<double>::read(MaterialParams& p) {
+  p.coefficient(kd, "kd", "Diffuse coefficient.", Vec3d(0.8));
+  p.coefficient_like(ka, "ka", "Ambient coefficient; default: kd.", kd, 1, 0);
+  p.coefficient(ks, "ks", "Specular coefficient.", Vec3d(0));
+  p.color(diffuse_color, "diffuse_color", "Colour that multiplies ka and kd.", Vec3d(1));
+  p.color(specular_color, "specular_color", "Colour that multiplies ks.", Vec3d(1));
+  p.number(shininess, "shininess", "Exponent of the highlight.", {.min = 0, .max = 1e6}, 20.0);
+  phong = p.plain().choice("shading", "Highlight model.", {"blinn-phong", "phong"}, "blinn-phong") == "phong";
+}
+
+Rough<double> read_rough(Params& p) {
+  RoughInputs<double> inputs{};
+  MaterialParams plain(p, nullptr, reinterpret_cast<double*>(&inputs));
+  inputs.read(plain);
+  return inputs.record();
 }
 
 // A relative error epsilon of the cosine becomes a relative error of shininess * epsilon in the highlight.

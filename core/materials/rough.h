@@ -10,15 +10,20 @@
 
 namespace orrery {
 
+class MaterialParams;
+template <class N>
+struct RoughInputs;
+
 // Ambient light, Lambertian reflection and a Phong or Blinn-Phong highlight.
 template <class N>
 struct Rough {
   Vec3<N> ambient, diffuse, specular;  // coefficient times colour
   N shininess;
   N phong;   // 1: Phong (mirrored light direction), 0: Blinn-Phong (half vector)
-  N chance;  // probability of sampling the highlight, with Lobes::all; read() sets 0 or 1
+  N chance;  // probability of sampling the highlight, with Lobes::all: 0 or 1
 
-  static Rough<double> read(Params& p);
+  template <class M>
+  using Inputs = RoughInputs<M>;
   MaterialTraits traits() const {
     const Vec3<N> none(N(0));
     return {.lit = true,
@@ -101,6 +106,26 @@ struct Rough {
 // Returns a kernel of these materials, numbered from `first`, for materials that add other lobes.
 MaterialKernelPtr<float> make_rough_kernel(float, std::span<const Rough<double>> records, int first);
 MaterialKernelPtr<double> make_rough_kernel(double, std::span<const Rough<double>> records, int first);
+// Reads a Rough material whose parameters are not textured.
+Rough<double> read_rough(Params& p);
+
+// Parameters of a Rough material.
+template <class N>
+struct RoughInputs {
+  Vec3<N> kd, ka, ks, diffuse_color, specular_color;
+  N shininess;
+  N phong;
+
+  void read(MaterialParams& p);
+  Rough<N> record() const {
+    using T = ScalarOf<N>;
+    const N zero(T(0)), one(T(1));
+    const Vec3<N> diffuse = kd * diffuse_color, specular = ks * specular_color;
+    const auto alone = !(max_component(diffuse) > zero) && max_component(specular) > zero &&
+                       shininess >= N(T(Rough<N>::kMinShininess));
+    return {ka * diffuse_color, diffuse, specular, shininess, phong, select(alone, one, zero)};
+  }
+};
 
 // Returns H = (L + V) / |L + V|, or the zero vector if L = -V.
 template <class N>

@@ -8,21 +8,19 @@
 
 namespace orrery {
 
-template <class N>
-Translucent<double> Translucent<N>::read(Params& p) {
-  const Vec3d back = p.coefficient("reflectance", "Diffuse reflectance, 0 to 1 per channel.", Vec3d(0.4), 1);
+template <>
+void TranslucentInputs<double>::read(MaterialParams& p) {
+  p.coefficient(reflectance, "reflectance", "Diffuse reflectance, 0 to 1 per channel.", Vec3d(0.4), 1);
+  const Vec3d back = p.most(reflectance);
   const Vec3d left(std::min(0.4, 1 - back.x), std::min(0.4, 1 - back.y), std::min(0.4, 1 - back.z));
-  const Vec3d on =
-      p.coefficient("transmittance",
-                    "Diffuse transmittance, 0 to 1 per channel; default: 0.4, or 1 - reflectance "
-                    "if that is less.",
-                    left, 1);
-  const double most = max_component(back + on);
+  p.coefficient(transmittance, "transmittance",
+                "Diffuse transmittance, 0 to 1 per channel; default: 0.4, or 1 - reflectance "
+                "if that is less.",
+                left, 1);
+  const double most = max_component(back + p.most(transmittance));
   if (most > 1)
-    p.fail("transmittance",
-           "reflectance + transmittance must be at most 1 in every channel (got " + number_text(most) + ")");
-  const double all = max_component(back) + max_component(on);
-  return {back, on, all > 0 ? max_component(on) / all : 0};
+    p.plain().fail("transmittance", "reflectance + transmittance must be at most 1 in every channel (got " +
+                                        number_text(most) + ")");
 }
 
 namespace {

@@ -9,7 +9,7 @@ namespace orrery {
 template <class N>
 Transparent<double> Transparent<N>::read(Params& p) {
   constexpr double kMaxTransmission = 10;
-  Rough<double> front = Rough<double>::read(p);
+  Rough<double> front = read_rough(p);
   const bool interpolated = p.choice("blend", "Interpolated: (1 - kt) I1 + kt I2. Filtered: I1 + kt Ct I2.",
                                      {"interpolated", "filtered"}, "interpolated") == "interpolated";
   const double kt =

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "core/math/lanes.h"
 #include "core/math/vec3.h"
@@ -201,6 +202,9 @@ struct SurfaceBatch {
   // Index of refraction inside the surface, divided by the index outside. Null unless Plan::media: indices of
   // materials are then relative to air, and materials apply their filters. Otherwise the technique does.
   const Array<T>* relative_index = nullptr;
+  // Values of textured parameters, by slot of TextureUse. Filled only in lanes whose material has such a
+  // parameter. Empty if the scene uses no textures.
+  std::vector<Vec3Array<T>> textured;
 
   // Returns the origins of rays along `direction` from the surfaces in register i. The origins are offset by
   // `step` to the side on which the rays leave.

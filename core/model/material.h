@@ -7,6 +7,7 @@
 #include "core/model/draws.h"
 #include "core/model/media.h"
 #include "core/model/rounding.h"
+#include "core/model/texture.h"
 
 // Materials. A scene stores all materials of one type in a MaterialSet, which creates a kernel in the plan's
 // number type. Radiance and coefficients are linear, per channel.
@@ -125,8 +126,11 @@ struct ReflectionLimits {
 class MaterialSet {
  public:
   virtual ~MaterialSet() = default;
-  virtual void add(Params& params) = 0;
+  virtual void add(Params& params, const TextureNames& textures) = 0;
   virtual int size() const = 0;
+  // Returns the textured parameters of a material. The other functions bound them by the bounds of the
+  // textures.
+  virtual std::vector<TextureUse> texture_uses(int /*index*/) const { return {}; }
   virtual MaterialTraits traits() const = 0;  // union over the set
   virtual RoundingLimit rounding(int /*index*/) const { return {}; }
   // Returns the fraction of light that is mirrored along the normal, for the channel with the largest

@@ -20,6 +20,7 @@
 #include "core/model/render_settings.h"
 #include "core/model/rounding.h"
 #include "core/model/shape.h"
+#include "core/model/texture.h"
 
 // core/model contains the data types and interfaces that all stages of a render share. Scene is a scene as
 // loaded, World the same scene in one number type, Plan the resolved settings, and Film the result. Const
@@ -146,6 +147,8 @@ struct Scene {
   std::vector<std::unique_ptr<MaterialSet>> materials;
   std::vector<Vec3d> emission;              // per material: radiance emitted on both sides
   std::vector<std::string> material_names;  // per material
+  std::vector<PlacedTexture> textures;
+  std::vector<TextureUse> texture_uses;  // uses by all materials, in their order
   std::vector<std::unique_ptr<LightSet>> light_sets;
   std::vector<LightPlace> lights;  // in file order
   std::deque<Model> models;

@@ -12,6 +12,8 @@ template <class T>
 struct ModelGeometry;
 template <class T>
 class LightTree;
+template <class T>
+class TextureStage;
 struct Screen;
 
 // Scene geometry in one number type, for one exposure. Immutable once built.
@@ -29,7 +31,8 @@ struct Geometry {
   std::vector<Materials> materials;
   // One per type, in the order of Scene::light_sets. Null for types without lights.
   std::vector<LightKernelPtr<T>> lights;
-  std::vector<Vec3<T>> emission;  // by material: see Scene; empty if nothing emits
+  std::shared_ptr<const TextureStage<T>> textures;  // null if no material uses a texture
+  std::vector<Vec3<T>> emission;                    // by material: see Scene; empty if nothing emits
   // Kernel of the emitting primitives that can be sampled. Null if there are none.
   LightKernelPtr<T> emitters;
   std::vector<IndexOf<T>> emitter_of;  // by primitive: index in `emitters`, or -1

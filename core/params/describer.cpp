@@ -85,6 +85,11 @@ void Describer::add(Key key, Doc doc, Schema schema, bool required, const Schema
   if (required) required_.push_back(name);
   Schema property = Schema::object();
   if (!doc.empty()) property["description"] = doc;
+  if (instead_.contains(name)) {
+    Schema ways = schema.contains("anyOf") ? schema["anyOf"] : Schema::array({schema});
+    ways.push_back(instead_[name]);
+    schema = {{"anyOf", std::move(ways)}};
+  }
   property.update(schema);
   if (fallback) property["default"] = *fallback;
   properties_[name] = std::move(property);
@@ -186,6 +191,13 @@ std::vector<std::array<std::int64_t, 3>> Describer::do_triples(Key key, Doc doc,
 void Describer::do_object(Key key, Doc doc, Missing missing, const Read& read) {
   add(key, doc, describe_object(read, definitions_), missing == Missing::problem,
       missing == Missing::empty ? &kEmptyObject : nullptr);
+}
+
+bool Describer::do_object_instead(Key key, std::string_view name, Doc doc, const Read& read) {
+  const std::string as(name), text(doc);
+  if (!definitions_.contains(as)) define(as.c_str(), text.c_str(), describe_object(read, definitions_));
+  instead_[std::string(key)] = {{"$ref", "#/$defs/" + as}};
+  return false;
 }
 
 void Describer::do_each(Key key, Doc doc, Count count, const Read& read) {

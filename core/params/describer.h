@@ -59,6 +59,7 @@ class Describer final : public Params {
   std::vector<std::array<double, 2>> do_pairs(Key, Doc, Count) override;
   std::vector<std::array<std::int64_t, 3>> do_triples(Key, Doc, Count, std::int64_t bound) override;
   void do_object(Key, Doc, Missing, const Read&) override;
+  bool do_object_instead(Key, std::string_view name, Doc, const Read&) override;
   void do_each(Key, Doc, Count, const Read&) override;
   void do_each_named(Key, Doc, Count, const ReadNamed&) override;
   std::optional<std::size_t> do_pick(Key, Doc, std::span<const Choice>) override;
@@ -81,6 +82,7 @@ class Describer final : public Params {
   Schema& definitions_;
   std::string title_, summary_;  // from the picked Choice
   Schema properties_ = Schema::object();
+  Schema instead_ = Schema::object();  // schemas of object_instead(), by key
   Schema required_ = Schema::array();
 };
 

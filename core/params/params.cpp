@@ -85,6 +85,10 @@ void Params::optional_object(Key key, Doc doc, const Read& read) {
 void Params::object_if_given(Key key, Doc doc, const Read& read) {
   do_object(key, doc, Missing::nothing, read);
 }
+bool Params::object_instead(Key key, std::string_view name, Doc doc, const Read& read) {
+  return do_object_instead(key, name, doc, read);
+}
+
 void Params::each(Key key, Doc doc, Count count, const Read& read) { do_each(key, doc, count, read); }
 void Params::each_named(Key key, Doc doc, Count count, const ReadNamed& read) {
   do_each_named(key, doc, count, read);

@@ -151,6 +151,10 @@ class Params {
                        const Read& read);  // a missing object is read as {}
   void object_if_given(std::string_view key, std::string_view doc,
                        const Read& read);  // `read` is not called if the object is missing
+  // Runs `read` if the value of `key` is an object, and returns whether it is. Otherwise the caller reads
+  // `key`, which may then be an object or the value that the caller declares. `name` and `doc` describe the
+  // object in the schema. REQUIRES: `read` declares the same keys in every call with the same name.
+  bool object_instead(std::string_view key, std::string_view name, std::string_view doc, const Read& read);
   void each(std::string_view key, std::string_view doc, Count count, const Read& read);
   void each_named(std::string_view key, std::string_view doc, Count count,
                   const ReadNamed& read);  // in byte order of the names
@@ -210,6 +214,7 @@ class Params {
   virtual std::vector<std::array<double, 2>> do_pairs(Key, Doc, Count) = 0;
   virtual std::vector<std::array<std::int64_t, 3>> do_triples(Key, Doc, Count, std::int64_t bound) = 0;
   virtual void do_object(Key, Doc, Missing, const Read&) = 0;
+  virtual bool do_object_instead(Key, std::string_view name, Doc, const Read&) = 0;
   virtual void do_each(Key, Doc, Count, const Read&) = 0;
   virtual void do_each_named(Key, Doc, Count, const ReadNamed&) = 0;
   virtual std::optional<std::size_t> do_pick(Key, Doc, std::span<const Choice>) = 0;

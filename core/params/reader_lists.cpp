@@ -158,6 +158,14 @@ void Reader::do_object(Key key, Doc, Missing missing, const Read& read) {
   if (value || missing == Missing::empty) read_inside(value ? *value : kEmpty, {key}, read);
 }
 
+bool Reader::do_object_instead(Key key, std::string_view, Doc, const Read& read) {
+  const json* value = lookup(key);
+  if (!value || !value->is_object()) return false;
+  asked_.push_back(key);
+  read_inside(*value, {key}, read);
+  return true;
+}
+
 void Reader::do_each(Key key, Doc, Count count, const Read& read) {
   const json* list = find_list(key, count, "objects");
   for (std::size_t i = 0; list && i < list->size(); ++i) read_inside((*list)[i], {key, i}, read);

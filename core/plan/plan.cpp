@@ -1,6 +1,7 @@
 #include "core/plan/plan.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cassert>
 #include <limits>
@@ -44,6 +45,7 @@ class Planner {
       const auto& [first, last] = scene_.motion;
       decide("time", seconds(plan_.time), "the motion runs from " + seconds(first) + " to " + seconds(last));
     }
+    explain_textures();
     open_shutter();
     choose_filter();
     choose_precision();
@@ -127,6 +129,26 @@ class Planner {
     if (*asked.seconds > 0) decide("seconds", "at most " + seconds(*asked.seconds), "as specified");
     if (plan_.free_samples)
       decide("samples", "at most " + std::to_string(plan_.samples), "chosen by the budget");
+  }
+
+  // Adds a decision for each texture in use.
+  void explain_textures() {
+    constexpr std::array kMappings{"uv", "planar", "spherical", "cylindrical", "solid"};
+    for (std::size_t i = 0; i < scene_.textures.size(); ++i) {
+      bool colours = false, bumps = false;
+      for (const TextureUse& use : scene_.texture_uses)
+        if (use.texture == static_cast<int>(i)) (use.slot == kBumpSlot ? bumps : colours) = true;
+      const PlacedTexture& texture = scene_.textures[i];
+      const std::string what = "texture " + texture.name;
+      if (!colours && !bumps) {
+        decide(what, "none", "no material uses it");
+        continue;
+      }
+      decide(what, texture.type,
+             std::string(kMappings[static_cast<std::size_t>(texture.mapping.kind)]) + " mapping, " +
+                 (texture.filtered ? "averaged over the pixel" : "not filtered") +
+                 (bumps ? colours ? "; values and bumps" : "; bumps" : ""));
+    }
   }
 
   void open_shutter() {

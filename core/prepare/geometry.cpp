@@ -6,6 +6,7 @@
 #include "core/accelerators/static_and_moving_bvh.h"
 #include "core/base/task_scope.h"
 #include "core/lighting/light_tree.h"
+#include "core/lighting/textures.h"
 #include "core/prepare/emitting_surfaces.h"
 #include "core/raster/screen.h"
 
@@ -123,7 +124,9 @@ void add_instances(const Scene& scene, const AcceleratorType& inner, const Expos
 
 // Adds all members that do not refer to shapes.
 template <class T>
-void add_lighting(const Scene& scene, Geometry<T>& geometry) {
+void add_lighting(const Scene& scene, const Exposure& exposure, Geometry<T>& geometry) {
+  if (!scene.texture_uses.empty())
+    geometry.textures = std::make_shared<const TextureStage<T>>(scene, exposure);
   geometry.ambient = Vec3<T>(scene.ambient);
   geometry.background = Vec3<T>(scene.background);
   geometry.material_of.assign(scene.material_of.begin(), scene.material_of.end());
@@ -166,7 +169,7 @@ std::shared_ptr<const Geometry<T>> make_geometry(std::shared_ptr<const Scene> sc
                                                  const AcceleratorType& inner, const Exposure& exposure,
                                                  const Geometry<T>* before) {
   auto geometry = std::make_shared<Geometry<T>>();
-  add_lighting(*scene, *geometry);
+  add_lighting(*scene, exposure, *geometry);
   geometry->primitives.reserve(scene->material_of.size());
   int number = 0;
   std::vector<ShapeKernelPtr<T>> moving;
@@ -182,7 +185,7 @@ std::shared_ptr<const Geometry<T>> make_geometry(std::shared_ptr<const Scene> sc
 template <class T>
 std::shared_ptr<const Geometry<T>> make_lighting(std::shared_ptr<const Scene> scene) {
   auto geometry = std::make_shared<Geometry<T>>();
-  add_lighting(*scene, *geometry);
+  add_lighting(*scene, {}, *geometry);
   geometry->scene = std::move(scene);
   return geometry;
 }

@@ -78,6 +78,9 @@ void PathReuse<T>::keep_first(int i, const PathBatch<T>& paths, const SurfaceBat
   ray_.put(i, paths.rays.direction.at(i));
   weight_.put(i, select(alive, scatter.weight.at(i), Vec3<N>(zero)));
   first_.travelled.put(i, surface.travelled.at(i));
+  if (first_.textured.size() < surface.textured.size()) first_.textured.resize(surface.textured.size());
+  for (std::size_t slot = 0; slot < surface.textured.size(); ++slot)
+    first_.textured[slot].put(i, surface.textured[slot].at(i));
   pdf_.put(i, select(drawn, scatter.pdf.at(i), zero));
   lit_.put(i, select(lit, N(T(1)), zero));
 }

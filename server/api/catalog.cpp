@@ -9,6 +9,7 @@
 #include "core/materials/registry.h"
 #include "core/shapes/registry.h"
 #include "core/techniques/registry.h"
+#include "core/textures/registry.h"
 #include "server/api/option_json.h"
 #include "server/base/embedded.h"
 
@@ -66,6 +67,7 @@ ordered_json catalog_json() {
   return {{"samples", samples()},
           {"shapes", entries_of(shape_types())},
           {"materials", entries_of(material_types())},
+          {"textures", entries_of(texture_types())},
           {"lights", entries_of(light_types())},
           {"cameras", entries_of(camera_types())},
           {"channels", channels()},

@@ -38,6 +38,7 @@ nlohmann::ordered_json fixed_limits() {
           {"chart_rounds", kMaxChartRounds},
           {"objects", kMaxObjects},
           {"lights", kMaxLights},
+          {"textures", kMaxTextures},
           {"instanced_primitives", kMaxInstanced},
           {"motion_keys", kMaxKeys},
           {"mesh_vertices", MeshLimits{}.vertices},

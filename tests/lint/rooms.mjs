@@ -16,6 +16,7 @@ export const kLayers = [
     "core/lights",
     "core/environments",
     "core/atmospheres",
+    "core/textures",
     "core/accelerators",
     "core/channels",
     "core/occlusion",

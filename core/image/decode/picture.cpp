@@ -67,6 +67,7 @@ Texels read_picture(std::string_view bytes, const PictureLimits& limits) {
   try {
     Texels picture = decode_in_process(inspect_picture(bytes, format, limits));
     check_texels(picture);
+    picture.from_srgb = format == PictureFormat::png || format == PictureFormat::jpeg;
     return picture;
   } catch (const InputError& error) {
     throw InputError("", name_of(format) + (": " + error.problems().front().detail));

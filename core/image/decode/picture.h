@@ -20,6 +20,7 @@ namespace orrery {
 struct Texels {
   int width = 0, height = 0;
   std::vector<float> rgb;  // red, green, blue per texel; top row first
+  bool from_srgb = false;  // the values were decoded from sRGB codes
 };
 using TexelsPtr = std::shared_ptr<const Texels>;
 

@@ -1,0 +1,232 @@
+#include "core/textures/image_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/base/task_scope.h"
+#include "core/image/srgb.h"
+#include "core/math/elementary.h"
+#include "core/model/asset_source.h"
+#include "core/params/params.h"
+
+namespace orrery {
+namespace {
+
+using Level = ImagePyramid::Level;
+
+// Overlaps of `from` texels with half as many texels, rounded up, along one axis.
+struct Halving {
+  int from, to;
+
+  explicit Halving(int count) : from(count), to((count + 1) / 2) {}
+
+  // Calls visit(texel of this level, share) for each overlap of texel `t` of the next level. The shares add
+  // up to 1.
+  template <class Visit>
+  void for_each(int t, const Visit& visit) const {
+    const double size = static_cast<double>(from) / to, begin = t * size, end = (t + 1) * size;
+    for (int f = static_cast<int>(begin); f < from && f < end; ++f) {
+      const double overlap = std::min(end, f + 1.0) - std::max(begin, static_cast<double>(f));
+      if (overlap > 0) visit(static_cast<std::size_t>(f), overlap / size);
+    }
+  }
+};
+
+Level next_level(const Level& from) {
+  const Halving across(from.width), down(from.height);
+  const auto old_width = static_cast<std::size_t>(from.width);
+  std::vector<float> rgb;
+  rgb.reserve(static_cast<std::size_t>(across.to) * static_cast<std::size_t>(down.to) * 3);
+  for (int row = 0; row < down.to; ++row) {
+    checkpoint();
+    for (int column = 0; column < across.to; ++column) {
+      std::array<double, 3> sum{};
+      down.for_each(row, [&](std::size_t y, double down_share) {
+        across.for_each(column, [&](std::size_t x, double across_share) {
+          for (std::size_t c = 0; c < 3; ++c)
+            sum[c] += down_share * across_share * double{(*from.rgb)[(y * old_width + x) * 3 + c]};
+        });
+      });
+      for (const double value : sum) rgb.push_back(static_cast<float>(value));
+    }
+  }
+  return {across.to, down.to, std::make_shared<const std::vector<float>>(std::move(rgb))};
+}
+
+// Returns the index of a texel after wrapping.
+std::size_t wrapped(std::int64_t i, int size, Wrap wrap) {
+  const std::int64_t n = size;
+  switch (wrap) {
+    case Wrap::repeat: return static_cast<std::size_t>(((i % n) + n) % n);
+    case Wrap::mirror: {
+      const std::int64_t m = ((i % (2 * n)) + 2 * n) % (2 * n);
+      return static_cast<std::size_t>(m < n ? m : 2 * n - 1 - m);
+    }
+    case Wrap::clamp: break;
+  }
+  return static_cast<std::size_t>(std::clamp<std::int64_t>(i, 0, n - 1));
+}
+
+}  // namespace
+
+ImagePyramid::ImagePyramid(const TexelsPtr& image, Wrap wrap) : wrap_(wrap) {
+  levels_.push_back(
+      {image->width, image->height, std::shared_ptr<const std::vector<float>>(image, &image->rgb)});
+  while (levels_.back().width > 1 || levels_.back().height > 1) levels_.push_back(next_level(levels_.back()));
+}
+
+template <class T>
+Vec3<T> ImagePyramid::bilinear(const Level& level, T u, T v) const {
+  // Coordinates beyond this limit have no fraction in float; it also keeps the integers exact.
+  constexpr T kFar = T(1 << 30);
+  const auto place = [kFar](T coordinate, int size) {
+    return std::clamp(coordinate * static_cast<T>(size) - T(0.5), -kFar, kFar);
+  };
+  const T x = place(u, level.width), y = place(T(1) - v, level.height);
+  const T left = std::floor(x), top = std::floor(y), right_share = x - left, lower_share = y - top;
+  const auto i = static_cast<std::int64_t>(left), j = static_cast<std::int64_t>(top);
+  const auto texel = [&](std::int64_t column, std::int64_t row) {
+    const std::vector<float>& rgb = *level.rgb;
+    const std::size_t at = (wrapped(row, level.height, wrap_) * static_cast<std::size_t>(level.width) +
+                            wrapped(column, level.width, wrap_)) *
+                           3;
+    return Vec3<T>(T(rgb[at]), T(rgb[at + 1]), T(rgb[at + 2]));
+  };
+  const auto mix = [](const Vec3<T>& a, const Vec3<T>& b, T share) { return a + (b - a) * share; };
+  return mix(mix(texel(i, j), texel(i + 1, j), right_share),
+             mix(texel(i, j + 1), texel(i + 1, j + 1), right_share), lower_share);
+}
+
+template <class T>
+Vec3<T> ImagePyramid::at(T u, T v, T level) const {
+  const T last = static_cast<T>(levels_.size() - 1), place = std::min(level, last), below = std::floor(place);
+  const auto index = static_cast<std::size_t>(below);
+  const Vec3<T> fine = bilinear(levels_[index], u, v);
+  if (!(place > below)) return fine;
+  return fine + (bilinear(levels_[index + 1], u, v) - fine) * (place - below);
+}
+
+template Vec3<float> ImagePyramid::at(float, float, float) const;
+template Vec3<double> ImagePyramid::at(double, double, double) const;
+
+namespace {
+
+template <class T>
+class ImageMapKernel final : public TextureKernel<T> {
+ public:
+  using N = Lanes<T>;
+
+  ImageMapKernel(std::shared_ptr<const ImagePyramid> image, T scale)
+      : image_(std::move(image)),
+        scale_(scale),
+        width_(static_cast<T>(image_->levels().front().width)),
+        height_(static_cast<T>(image_->levels().front().height)) {}
+
+  // The level is log2 of the larger side of the box, in texels.
+  void evaluate(const TexturePoints<T>& points, const LaneGroups& groups,
+                Vec3Array<T>& value) const override {
+    for (const int i : groups) {
+      const N side = max_first(N(points.width.x.at(i) * N(width_)), N(points.width.y.at(i) * N(height_)));
+      const N level = log2_normal(max_first(N(T(1)), side));
+      for (int lane = i; lane < i + kWidth<T>; ++lane) {
+        const T u = points.at.x[lane], v = points.at.y[lane];
+        const T at_level = std::max(T(0), level[static_cast<std::size_t>(lane - i)]);
+        value.set(lane, std::isfinite(u) && std::isfinite(v) ? image_->at<T>(u, v, at_level) * scale_
+                                                             : Vec3<T>(T(0)));
+      }
+    }
+  }
+
+ private:
+  std::shared_ptr<const ImagePyramid> image_;
+  T scale_, width_, height_;
+};
+
+class ImageMap final : public Texture {
+ public:
+  ImageMap(const TexelsPtr& image, Wrap wrap, double scale)
+      : image_(std::make_shared<const ImagePyramid>(image, wrap)), scale_(scale) {
+    bounds_ = {Vec3d(std::numeric_limits<double>::infinity()), Vec3d(0)};
+    for (std::size_t k = 0; k < image->rgb.size(); k += 3) {
+      const Vec3d texel(image->rgb[k], image->rgb[k + 1], image->rgb[k + 2]);
+      bounds_.least = {std::min(bounds_.least.x, texel.x), std::min(bounds_.least.y, texel.y),
+                       std::min(bounds_.least.z, texel.z)};
+      bounds_.most = largest(bounds_.most, texel);
+    }
+    bounds_ = {bounds_.least * scale, bounds_.most * scale};
+  }
+  TextureBounds bounds() const override { return bounds_; }
+  double detail() const override {
+    const auto& finest = image_->levels().front();
+    return 1.0 / std::max(finest.width, finest.height);
+  }
+  TextureKernelPtr<float> kernel(float) const override { return make<float>(); }
+  TextureKernelPtr<double> kernel(double) const override { return make<double>(); }
+
+ private:
+  template <class T>
+  TextureKernelPtr<T> make() const {
+    return std::make_unique<ImageMapKernel<T>>(image_, static_cast<T>(scale_));
+  }
+  std::shared_ptr<const ImagePyramid> image_;
+  double scale_;
+  TextureBounds bounds_;
+};
+
+// Returns the sRGB codes of an image, divided by the largest code. Linear images are returned unchanged.
+// Codes of 8 bits are exact multiples of 1 / 65535 too, and encode_srgb() is accurate enough for 16 bits.
+TexelsPtr as_codes(const TexelsPtr& image) {
+  if (!image->from_srgb) return image;
+  Texels codes = *image;
+  for (std::size_t k = 0; k < codes.rgb.size(); ++k) {
+    checkpoint(k);
+    codes.rgb[k] = std::round(encode_srgb(codes.rgb[k]) * 65535) / 65535;
+  }
+  return std::make_shared<const Texels>(std::move(codes));
+}
+
+TexelsPtr read_texels(Params& p, const char* key, const std::string& name, const auto& read) {
+  try {
+    if (name.empty()) throw InputError("", "must be a name (got \"\")");
+    return read(name);
+  } catch (const InputError& error) {
+    p.fail(key, error.problems().front().detail);
+    return nullptr;
+  }
+}
+
+std::shared_ptr<const Texture> read_image_map(Params& p, const AssetSource& source) {
+  constexpr std::size_t kMostNameLength = 1024;
+  TexelsPtr image;
+  if (p.form({{"file"}, {"asset"}}) == 0) {
+    const std::string name =
+        p.text("file", "EXR, HDR, PNG or JPEG file in or below the scene's folder; command line only.",
+               kMostNameLength);
+    image = read_texels(p, "file", name, [&](const std::string& n) { return source.picture_file(n); });
+  } else {
+    const std::string name = p.text("asset", "SHA-256 of an uploaded EXR, HDR, PNG or JPEG file.", 64);
+    image = read_texels(p, "asset", name, [&](const std::string& n) { return source.picture_asset(n); });
+  }
+  const bool is_linear =
+      p.choice(
+          "encoding",
+          "Encoding of PNG and JPEG files: sRGB, or codes / 255 as they are. EXR and HDR files are linear.",
+          {"srgb", "linear"}, "srgb") == "linear";
+  const std::string wrap =
+      p.choice("wrap", "Continuation of the image outside 0 to 1.", {"repeat", "mirror", "clamp"}, "repeat");
+  const double scale =
+      p.number("scale", "Factor of the values of the image.", {.min = 0, .max = kMaxColor}, 1.0);
+  if (!image) return nullptr;
+  const Wrap mode = wrap == "repeat" ? Wrap::repeat : wrap == "mirror" ? Wrap::mirror : Wrap::clamp;
+  return std::make_shared<const ImageMap>(is_linear ? as_codes(image) : image, mode, scale);
+}
+
+}  // namespace
+
+TextureType image_map_type() {
+  return {"image", "An image, averaged over the pixel by a pyramid of smaller copies.", read_image_map};
+}
+
+}  // namespace orrery
