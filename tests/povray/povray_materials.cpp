@@ -21,9 +21,10 @@ Vec3d ratio(const Vec3d& a, const Vec3d& b) {
 // The pigment is Orrery's diffuse colour. POV-Ray's highlights have the colour of the light. `phong` is a
 // power of the cosine at the mirrored direction, as in Orrery. `specular` is a power 1 / roughness of the
 // cosine at the half vector.
-Material rough(const Json& m) {
+Material rough(const Json& m, const Json& textures) {
   const Vec3d cd = vector_of(m, "diffuse_color", Vec3d(1));
-  const Vec3d kd = coefficient_of(m, "kd", Vec3d(0.8));
+  const bool textured = m.contains("kd") && m.at("kd").is_object();
+  const Vec3d kd = textured ? Vec3d(1) : coefficient_of(m, "kd", Vec3d(0.8));
   const Vec3d ambient = ratio(coefficient_of(m, "ka", kd) * cd, kd * cd);
   const Vec3d highlight = coefficient_of(m, "ks", Vec3d(0)) * vector_of(m, "specular_color", Vec3d(1));
   if (highlight.x != highlight.y || highlight.y != highlight.z)
@@ -36,7 +37,9 @@ Material rough(const Json& m) {
     finish += m.value("shading", "blinn-phong") == "phong"
                   ? " phong " + text(highlight.x) + " phong_size " + text(shininess)
                   : " specular " + text(highlight.x) + " roughness " + text(1 / shininess);
-  return {"pigment { rgb " + text(kd * cd) + " } finish { " + finish + " } ", false};
+  const std::string pigment =
+      textured ? pigment_of(m.at("kd"), textures, cd) : "pigment { rgb " + text(kd * cd) + " } ";
+  return {pigment + "finish { " + finish + " } ", false};
 }
 
 // Schlick's approximation corresponds to a POV-Ray reflection from F0 to 1 with falloff 5, the exponent of (1
@@ -94,9 +97,9 @@ Material transparent(const Json& m) {
 
 }  // namespace
 
-Material material_of(const Json& material) {
+Material material_of(const Json& material, const Json& textures) {
   const std::string type = material.at("type");
-  if (type == "rough") return rough(material);
+  if (type == "rough") return rough(material, textures);
   if (type == "reflective") return reflective(material);
   if (type == "refractive") return refractive(material);
   if (type == "transparent") return transparent(material);

@@ -60,7 +60,7 @@ std::string povray_scene(const Json& scene, const PovrayOptions& options) {
     out += povray::light_of(light, options.exposure);
   std::map<std::string, povray::Material> materials;
   for (const auto& [name, material] : scene.at("materials").items())
-    materials.emplace(name, povray::material_of(material));
+    materials.emplace(name, povray::material_of(material, scene.value("textures", Json::object())));
   for (const Json& object : scene.at("objects"))
     out += object_of(object, materials.at(object.at("material")));
   return out;

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "core/load/asset_files.h"
 #include "core/load/load.h"
 #include "core/plan/plan.h"
 #include "tests/povray/picture.h"
@@ -63,6 +64,8 @@ const Case kCases[] = {
     {"cones", "tests/povray/scenes/cones.json"},
     {"tori", "tests/povray/scenes/tori.json"},
     {"fog", "tests/povray/scenes/fog.json"},
+    {"checkers", "tests/povray/scenes/checkers.json"},
+    {"images", "tests/povray/scenes/images.json"},
     {"orthographic", "tests/povray/scenes/orthographic.json"},
 };
 
@@ -116,7 +119,7 @@ TEST_P(Povray, RendersSameImage) {
   const std::string folder = std::string("build/povray/") + c.name;
   std::filesystem::create_directories(folder);
   const std::string json = read_file(c.file);
-  const PreparedScene scene(load_scene(json));
+  const PreparedScene scene(load_scene(json, AssetFiles(std::filesystem::path(c.file).parent_path())));
   const Plan plan = make_plan(scene.scene(), c.request);
 
   const Picture ours = render_picture(scene, plan);

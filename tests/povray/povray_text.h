@@ -37,7 +37,10 @@ struct Material {
   std::string modifiers;
   bool transparent;
 };
-Material material_of(const Json& material);
+Material material_of(const Json& material, const Json& textures);
+
+// Returns the pigment of a parameter that uses a texture, multiplied by `factor`.
+std::string pigment_of(const Json& use, const Json& textures, const Vec3d& factor);
 
 // Returns the object without its closing brace, so that modifiers can follow.
 std::string shape_of(const Json& object);
