@@ -14,6 +14,7 @@ import { certificateFaults } from "./certificates.mjs";
 import { serviceFaults } from "./service.mjs";
 import { structureFaults } from "./structures.mjs";
 import { textbookFaults } from "./textbook.mjs";
+import { textureFaults } from "./textures.mjs";
 import { transportFaults } from "./transport.mjs";
 
 export const faults = [
@@ -22,4 +23,5 @@ export const faults = [
   ...transportFaults,
   ...certificateFaults,
   ...serviceFaults,
+  ...textureFaults,
 ];
