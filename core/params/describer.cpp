@@ -175,6 +175,12 @@ std::vector<Vec3d> Describer::do_threes(Key key, Doc doc, Kind kind, Count count
   return std::vector<Vec3d>(count.min, kind == Kind::direction ? Vec3d{0, 0, 1} : Vec3d{});
 }
 
+std::vector<double> Describer::do_numbers(Key key, Doc doc, Count count, const Range& range) {
+  add(key, doc, list_schema(number_schema("number", range), count), count.min > 0,
+      if_empty_allowed(count, kEmptyList));
+  return std::vector<double>(count.min, stand_in(range));
+}
+
 std::vector<std::array<double, 2>> Describer::do_pairs(Key key, Doc doc, Count count) {
   const Range coordinates{.min = -kMaxCoordinate, .max = kMaxCoordinate};
   add(key, doc, list_schema(list_schema(number_schema("number", coordinates), {.min = 2, .max = 2}), count),

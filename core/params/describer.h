@@ -56,6 +56,7 @@ class Describer final : public Params {
   std::string do_text(Key, Doc, std::size_t max_length, const char* fallback) override;
   Vec3d do_three(Key, Doc, Kind, const Range&, const Fallback<Vec3d>&) override;
   std::vector<Vec3d> do_threes(Key, Doc, Kind, Count) override;
+  std::vector<double> do_numbers(Key, Doc, Count, const Range&) override;
   std::vector<std::array<double, 2>> do_pairs(Key, Doc, Count) override;
   std::vector<std::array<std::int64_t, 3>> do_triples(Key, Doc, Count, std::int64_t bound) override;
   void do_object(Key, Doc, Missing, const Read&) override;

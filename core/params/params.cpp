@@ -69,6 +69,10 @@ std::vector<Vec3d> Params::directions(Key key, Doc doc, Count count) {
   return all;
 }
 
+std::vector<double> Params::numbers(Key key, Doc doc, Count count, const Range& range) {
+  return do_numbers(key, doc, count, range);
+}
+
 std::vector<std::array<double, 2>> Params::pairs(Key key, Doc doc, Count count) {
   return do_pairs(key, doc, count);
 }

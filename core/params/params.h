@@ -138,6 +138,8 @@ class Params {
                             Count count);  // elements as in point()
   std::vector<Vec3d> directions(std::string_view key, std::string_view doc,
                                 Count count);  // elements as in direction()
+  // Reads a list of numbers, e.g. weights. If `count.min` is 0, a missing key means an empty list.
+  std::vector<double> numbers(std::string_view key, std::string_view doc, Count count, const Range& range);
   // Reads a list of pairs of numbers within +-kMaxCoordinate, e.g. texture coordinates.
   std::vector<std::array<double, 2>> pairs(std::string_view key, std::string_view doc, Count count);
   // Reads a list of integer triples with 0 <= i < bound, e.g. triangle indices. The schema does not show
@@ -211,6 +213,7 @@ class Params {
   virtual std::string do_text(Key, Doc, std::size_t max_length, const char* fallback) = 0;
   virtual Vec3d do_three(Key, Doc, Kind, const Range&, const Fallback<Vec3d>&) = 0;
   virtual std::vector<Vec3d> do_threes(Key, Doc, Kind, Count) = 0;
+  virtual std::vector<double> do_numbers(Key, Doc, Count, const Range&) = 0;
   virtual std::vector<std::array<double, 2>> do_pairs(Key, Doc, Count) = 0;
   virtual std::vector<std::array<std::int64_t, 3>> do_triples(Key, Doc, Count, std::int64_t bound) = 0;
   virtual void do_object(Key, Doc, Missing, const Read&) = 0;

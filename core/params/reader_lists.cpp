@@ -91,6 +91,19 @@ std::vector<Vec3d> Reader::do_threes(Key key, Doc, Kind kind, Count count) {
   return all;
 }
 
+std::vector<double> Reader::do_numbers(Key key, Doc, Count count, const Range& range) {
+  const json* list = find_list(key, count, "numbers");
+  std::vector<double> all(list ? list->size() : count.min, stand_in(range));
+  for (std::size_t i = 0; list && i < all.size(); ++i) {
+    const std::optional<double> number = number_in((*list)[i], range);
+    if (number)
+      all[i] = *number;
+    else
+      note_value(location_text({key, i}), "a number" + range_text(range), (*list)[i]);
+  }
+  return all;
+}
+
 std::vector<std::array<double, 2>> Reader::do_pairs(Key key, Doc, Count count) {
   const json* list = find_list(key, count, "pairs of numbers");
   std::vector<std::array<double, 2>> all(list ? list->size() : count.min);

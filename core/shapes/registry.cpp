@@ -16,7 +16,9 @@ namespace orrery {
   add(rectangle)           \
   add(cylinder)            \
   add(cone)                \
-  add(torus)
+  add(torus)               \
+  add(patch)               \
+  add(nurbs)
 // clang-format on
 
 #define ORRERY_DECLARE(name) ShapeType name##_type();

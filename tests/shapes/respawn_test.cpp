@@ -54,7 +54,7 @@ class Leaver {
       if (closed)
         tally.leaks += !below[i].met() && runs_inside(down[i], spots_[i].step);
       else
-        tally.self_hits += below[i].primitive == primitive;
+        tally.self_hits += below[i].primitive == primitive && !meets_other_part(down[i], below[i].t);
     }
   }
 
@@ -67,7 +67,7 @@ class Leaver {
     return way.met() && way.t > static_cast<long double>(step);
   }
 
-  // Returns true if the shape is not convex and an outward ray hits another part of it at about `t`.
+  // Returns true if the shape is not convex and a ray that leaves it hits another part of it at about `t`.
   bool meets_other_part(const Ray<T>& ray, T t) const {
     return !shape_.traits(0).convex &&
            exact_.closest(convert_ray<long double>(ray)).t <= 2 * static_cast<long double>(t);

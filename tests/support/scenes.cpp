@@ -26,7 +26,7 @@ constexpr std::string_view kEmptyScene = R"({
 const std::set<std::string> kPoints = {"translate", "eye", "look_at",  "center", "point", "base", "top",
                                        "min",       "max", "position", "corner", "from",  "to"};
 const std::set<std::string> kSides = {"edge_u", "edge_v"};  // vectors with a length
-const std::set<std::string> kPointLists = {"vertices", "positions"};
+const std::set<std::string> kPointLists = {"vertices", "positions", "points"};
 const std::set<std::string> kLengths = {"radius",       "base_radius", "top_radius",      "major_radius",
                                         "minor_radius", "height",      "aperture_radius", "focus_distance",
                                         "front",        "back",        "mean_free_path"};
