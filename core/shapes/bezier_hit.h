@@ -100,35 +100,48 @@ Jacobian<N> mean_jacobian(const RayNets<N>& nets, NetDegrees degrees) {
   return {mean.au * over_rows, mean.av * over_row, mean.bu * over_rows, mean.bv * over_row};
 }
 
-// Returns whether (a, b), multiplied by the inverse of its mean Jacobian, differs from the identity by a map
-// with Lipschitz constant 1/5 in the maximum norm. Newton's iteration then halves the error or better.
+// Roots of (a, b) on [0, 1]^2, as far as the nets decide.
 template <class N>
-MaskOf<N> nearly_linear(const RayNets<N>& nets, NetDegrees degrees) {
+struct RootCount {
+  MaskOf<N> possible;  // false: there is none
+  MaskOf<N> simple;    // there is at most one, and newton_root() finds it
+};
+
+// Multiplies (a, b) by the adjugate of its mean Jacobian matrix J. There is no root if a component of the
+// product has one sign. There is at most one root if the product over det J differs from the identity by a
+// map with Lipschitz constant 1/5 in the maximum norm. Newton's iteration then halves the error or better.
+template <class N>
+RootCount<N> count_roots(const RayNets<N>& nets, NetDegrees degrees, const N& tolerance) {
   using std::abs;
   using T = ScalarOf<N>;
   const Jacobian<N> mean = mean_jacobian(nets, degrees);
-  const MaskOf<N> regular = mean.regular();
-  if (!any(regular)) return regular;
-  const N inverse = T(1) / mean.determinant();
-  const N ca = mean.bv * inverse, cb = mean.av * inverse, da = mean.bu * inverse, db = mean.au * inverse;
   const std::size_t row = degrees.row(), size = degrees.size();
   std::array<N, kMaxNet> first, second;
   for (std::size_t i = 0; i < size; ++i) {
-    first[i] = nets.a[i] * ca - nets.b[i] * cb;
-    second[i] = nets.b[i] * db - nets.a[i] * da;
+    first[i] = nets.a[i] * mean.bv - nets.b[i] * mean.av;
+    second[i] = nets.b[i] * mean.au - nets.a[i] * mean.bu;
   }
-  const T m = static_cast<T>(degrees.u), n = static_cast<T>(degrees.v), one(1);
+  const NetRange<N> range = range_of(first, size), other = range_of(second, size);
+  const N margin = tolerance * (abs(mean.bv) + abs(mean.av));
+  const N other_margin = tolerance * (abs(mean.au) + abs(mean.bu));
+  const MaskOf<N> possible = range.low <= margin && range.high >= -margin && other.low <= other_margin &&
+                             other.high >= -other_margin;
+  const MaskOf<N> regular = possible && mean.regular();
+  if (!any(regular)) return {possible, regular};
+  const N determinant = mean.determinant();
+  const T m = static_cast<T>(degrees.u), n = static_cast<T>(degrees.v);
   N first_u(T(0)), first_v(T(0)), second_u(T(0)), second_v(T(0));
   for (std::size_t j = 0; j < size; j += row)
     for (std::size_t i = j; i + 1 < j + row; ++i) {
-      first_u = max_first(first_u, N(abs((first[i + 1] - first[i]) * m - one)));
+      first_u = max_first(first_u, N(abs((first[i + 1] - first[i]) * m - determinant)));
       second_u = max_first(second_u, N(abs((second[i + 1] - second[i]) * m)));
     }
   for (std::size_t i = 0; i + row < size; ++i) {
     first_v = max_first(first_v, N(abs((first[i + row] - first[i]) * n)));
-    second_v = max_first(second_v, N(abs((second[i + row] - second[i]) * n - one)));
+    second_v = max_first(second_v, N(abs((second[i + row] - second[i]) * n - determinant)));
   }
-  return regular && max_first(N(first_u + first_v), N(second_u + second_v)) < N(T(0.2));
+  const N change = max_first(N(first_u + first_v), N(second_u + second_v));
+  return {possible, regular && change < abs(determinant) * T(0.2)};
 }
 
 template <class N>
@@ -198,9 +211,11 @@ class BezierRays {
     detail::RayNets<N> nets;
     fill(nets);
     const std::size_t size = piece_.degrees.size();
-    const MaskOf<N> possible = detail::may_contain_hit(nets, size, tolerance_);
+    MaskOf<N> possible = detail::may_contain_hit(nets, size, tolerance_);
     if (!any(possible)) return hit;
-    const MaskOf<N> simple = possible && detail::nearly_linear(nets, piece_.degrees);
+    const detail::RootCount<N> count = detail::count_roots(nets, piece_.degrees, tolerance_);
+    possible = possible && count.possible;
+    const MaskOf<N> simple = possible && count.simple;
     const detail::NetRoot<N> root = detail::newton_root(nets, piece_.degrees, simple);
     accept(nets, root.u, root.v, simple && root.settled, hit);
     const MaskOf<N> rest = possible && !(simple && root.settled);
@@ -298,7 +313,12 @@ class BezierRays {
         --count;
         continue;
       }
-      if (detail::nearly_linear(part.nets, piece_.degrees)) {
+      const detail::RootCount<T> roots = detail::count_roots(part.nets, piece_.degrees, tolerance);
+      if (!roots.possible) {
+        --count;
+        continue;
+      }
+      if (roots.simple) {
         const detail::NetRoot<T> root = detail::newton_root<T>(part.nets, piece_.degrees, true);
         if (root.settled) {
           if (within_part(root.u) && within_part(root.v)) take(root.u, root.v, 1);
