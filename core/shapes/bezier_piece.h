@@ -30,6 +30,8 @@ struct BezierPiece {
   std::size_t first;  // index of its net in BezierTable::nets
   Vec3<T> origin;
   T radius;  // of a sphere around `origin` that contains the control points
+  T reach;   // largest absolute coordinate of a control point, relative to `origin`
+  T weight;  // largest weight
   T u0, u1, v0, v1;
   T magnitude;  // largest absolute coordinate of the control points of the object
 };

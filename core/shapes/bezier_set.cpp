@@ -17,13 +17,19 @@ Boundsd box_of(const BezierPatch& patch) {
 
 template <class T>
 BezierPiece<T> piece_of(const BezierPatch& patch, std::size_t first, double magnitude) {
-  double radius = 0;
-  for (std::size_t i = 0; i < patch.size(); ++i) radius = std::max(radius, length(patch.point(i)));
+  double radius = 0, reach = 0, weight = 0;
+  for (std::size_t i = 0; i < patch.size(); ++i) {
+    radius = std::max(radius, length(patch.point(i)));
+    reach = std::max(reach, max_component(abs(patch.point(i))));
+    weight = std::max(weight, patch.weight(i));
+  }
   return {patch.degrees,
           patch.rational,
           first,
           Vec3<T>(patch.origin),
           static_cast<T>(radius),
+          static_cast<T>(reach),
+          static_cast<T>(weight),
           static_cast<T>(patch.u0),
           static_cast<T>(patch.u1),
           static_cast<T>(patch.v0),
@@ -55,14 +61,24 @@ struct Bending {
 
 enum class Cut { none, u, v };
 
-// Returns how to halve the patch so that its derivatives change by less than a quarter, about 14 degrees of
-// a circle. Rays that are not grazing then need one Newton iteration for each piece.
-Cut cut_of(const BezierPatch& patch) {
-  constexpr double kMaxChange = 0.25;
+// Returns half of the largest side of the control points' box.
+double half_size(const BezierPatch& patch) {
+  Boundsd box;
+  for (std::size_t i = 0; i < patch.size(); ++i) box.include(patch.point(i));
+  return max_component(box.hi - box.lo) / 2;
+}
+
+// Returns how to halve the patch so that its derivatives change by less than a half, about 29 degrees of a
+// circle, and its half size is at most a quarter of `magnitude`. Most rays that are not grazing then need one
+// Newton iteration for each piece, and the tolerance of hits is less than the offset of rays that leave the
+// surface (SurfaceBatch::step).
+Cut cut_of(const BezierPatch& patch, double magnitude) {
+  constexpr double kMaxChange = 0.5;
   const Bending bending(patch);
   if (bending.uu > kMaxChange * bending.u && bending.uu * bending.v >= bending.vv * bending.u) return Cut::u;
   if (bending.vv > kMaxChange * bending.v) return Cut::v;
-  if (bending.uv > kMaxChange * std::max(bending.u, bending.v))
+  const bool large = half_size(patch) > magnitude / 4;
+  if (large || bending.uv > kMaxChange * std::max(bending.u, bending.v))
     return bending.u > bending.v ? Cut::u : Cut::v;
   return Cut::none;
 }
@@ -169,41 +185,46 @@ BezierPatch centered(BezierPatch patch) {
 }
 
 int BezierSet::add(Params& params, MeshSource&) {
-  constexpr int kMaxCuts = 10;  // of one patch in sequence
   Object object{{}, pieces_.size(), 0};
   read_(params, object.patches);
   for (BezierPatch& patch : object.patches) {
     patch = centered(std::move(patch));
     object.magnitude = std::max(object.magnitude, box_of(patch).magnitude());
-    struct Part {
-      BezierPatch patch;
-      int cuts;
-    };
-    std::vector<Part> parts;
-    parts.push_back({patch, 0});
-    while (!parts.empty()) {
-      checkpoint();
-      Part& part = parts.back();
-      const Cut cut = part.cuts < kMaxCuts ? cut_of(part.patch) : Cut::none;
-      if (cut == Cut::none) {
-        coefficients_ += part.patch.net.size();
-        if (coefficients_ > kMaxBezierCoefficients) {
-          params.fail("", "pieces of the curved patches of the scene need more than " +
-                              grouped(kMaxBezierCoefficients) + " coefficients");
-          return 0;
-        }
-        pieces_.push_back(centered(std::move(part.patch)));
-        parts.pop_back();
-        continue;
-      }
-      ++part.cuts;
-      BezierPatch second = split_off(part.patch, cut == Cut::u);
-      const int cuts = part.cuts;
-      parts.push_back({std::move(second), cuts});
-    }
   }
+  for (const BezierPatch& patch : object.patches)
+    if (!add_pieces(patch, object.magnitude)) {
+      params.fail("", "pieces of the curved patches of the scene need more than " +
+                          grouped(kMaxBezierCoefficients) + " coefficients");
+      return 0;
+    }
   objects_.push_back(std::move(object));
   return static_cast<int>(pieces_.size() - objects_.back().first_piece);
+}
+
+bool BezierSet::add_pieces(const BezierPatch& patch, double magnitude) {
+  constexpr int kMaxCuts = 10;  // of one patch in sequence
+  struct Part {
+    BezierPatch patch;
+    int cuts;
+  };
+  std::vector<Part> parts;
+  parts.push_back({patch, 0});
+  while (!parts.empty()) {
+    checkpoint();
+    Part& part = parts.back();
+    const Cut cut = part.cuts < kMaxCuts ? cut_of(part.patch, magnitude) : Cut::none;
+    if (cut != Cut::none) {
+      const int cuts = ++part.cuts;
+      BezierPatch second = split_off(part.patch, cut == Cut::u);
+      parts.push_back({std::move(second), cuts});
+      continue;
+    }
+    coefficients_ += part.patch.net.size();
+    if (coefficients_ > kMaxBezierCoefficients) return false;
+    pieces_.push_back(centered(std::move(part.patch)));
+    parts.pop_back();
+  }
+  return true;
 }
 
 Boundsd BezierSet::bounds(int index) const { return box_of(pieces_[static_cast<std::size_t>(index)]); }

@@ -33,6 +33,8 @@ class BezierSet final : public ShapeSet {
     double magnitude;  // largest absolute coordinate of the control points
   };
 
+  // Adds the pieces of a patch of an object. Returns false if the scene has too many.
+  bool add_pieces(const BezierPatch& patch, double magnitude);
   template <class T>
   ShapeKernelPtr<T> make(int first) const;
 

@@ -63,6 +63,20 @@ std::string torus(const Json& o) {
          text(o.at("minor_radius").get<double>()) + " sturm matrix <" + rows + "> ";
 }
 
+// POV-Ray divides each patch into 64 x 64 pairs of triangles with interpolated normals.
+std::string bicubic_patches(const Json& o) {
+  const Json& points = o.at("points");
+  if (o.value("degree_u", 3) != 3 || o.value("degree_v", 3) != 3 || o.contains("weights"))
+    throw UnsupportedFeature("cannot export patches of other degrees or with weights");
+  std::string out = "union {\n";
+  for (std::size_t first = 0; first < points.size(); first += 16) {
+    out += "  bicubic_patch { type 1 flatness 0 u_steps 6 v_steps 6";
+    for (std::size_t i = first; i < first + 16; ++i) out += ", " + text(vector_of(points[i]));
+    out += " }\n";
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string shape_of(const Json& o) {
@@ -79,6 +93,7 @@ std::string shape_of(const Json& o) {
   if (type == "cylinder") return cylinder(o);
   if (type == "cone") return cone(o);
   if (type == "torus") return torus(o);
+  if (type == "patch") return bicubic_patches(o);
   throw UnsupportedFeature("cannot export shape of type " + type);
 }
 
