@@ -394,6 +394,11 @@ class Planner {
       return decide("reflected and refracted rays", "none", "no smooth material in use reflects or refracts");
     }
     if (!plan_.technique->secondary_rays) {
+      if (plan_.technique->rasterizes && used.straight)
+        return decide("transparency", "without refraction",
+                      "surfaces behind transparent ones are drawn in the order of their depth, up to depth " +
+                          std::to_string(plan_.max_depth),
+                      cut_bound(1));
       plan_.max_depth = 0;
       return decide("reflected and refracted rays", "none",
                     std::string(plan_.technique->name) + " does not trace them", Bound::unknown());

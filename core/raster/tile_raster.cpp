@@ -13,34 +13,6 @@ constexpr std::uint32_t kAhead = 8;  // triangles that are prefetched
 
 }  // namespace
 
-void TileRaster::draw(const TileView& tile, const TileSamples& samples) {
-  tile_ = tile;
-  known_ = -1;
-  reach_ = 0;
-  for (int slot = 0; slot < kBatch; ++slot) {
-    const auto place = [&](int pixel, float within) {
-      reach_ = std::max(reach_, std::fabs(within - 0.5) * kSubpixels + 1);
-      return std::floor((pixel + double{within}) * kSubpixels);
-    };
-    const TilePixel pixel = tile_pixel(slot);
-    x_[slot] = place(pixel.x, samples.u[slot]);
-    y_[slot] = place(pixel.y, samples.v[slot]);
-    nearness_[slot] = -std::numeric_limits<double>::infinity();
-    nearest_[slot] = -1;
-  }
-  const int across = tile.x0 / kTileSide, down = tile.y0 / kTileSide;
-  const auto number = static_cast<std::size_t>(down * screen_.tiles_across + across);
-  for (std::size_t c = 0; c < screen_.chunks.size(); ++c) {
-    const Screen::Chunk& chunk = screen_.chunks[c];
-    checkpoint();
-    const std::uint32_t end = chunk.first[number + 1];
-    for (std::uint32_t i = chunk.first[number]; i < end; ++i) {
-      prefetch_lines(chunk.triangles[chunk.list[std::min(i + kAhead, end - 1)]]);
-      draw(chunk.triangles[chunk.list[i]], static_cast<std::int64_t>(c << 32 | chunk.list[i]));
-    }
-  }
-}
-
 TileRaster::Edges TileRaster::edges_of(const ScreenTriangle& triangle) const {
   const auto x = [&](std::size_t i) { return double(triangle.x[i % 3] - tile_.x0 * kSubpixels); };
   const auto y = [&](std::size_t i) { return double(triangle.y[i % 3] - tile_.y0 * kSubpixels); };
@@ -58,6 +30,7 @@ TileRaster::Edges TileRaster::edges_of(const ScreenTriangle& triangle) const {
   return edges;
 }
 
+template <bool peels>
 [[gnu::flatten]] void TileRaster::draw(const ScreenTriangle& triangle, std::int64_t number) {
   const Edges edges = edges_of(triangle);
   const auto pixels = [&](const std::array<std::int32_t, 3>& at, int corner, int size) {
@@ -82,12 +55,60 @@ TileRaster::Edges TileRaster::edges_of(const ScreenTriangle& triangle) const {
         const N e0 = a[0] * x + b[0] * y + c[0], e1 = a[1] * x + b[1] * y + c[1],
                 e2 = a[2] * x + b[2] * y + c[2];
         const N nearness = e0 * near[0] + e1 * near[1] + e2 * near[2];
-        const auto seen = e0 >= edges.least[0] && e1 >= edges.least[1] && e2 >= edges.least[2] &&
-                          nearness > nearness_.at(i);
+        auto seen = e0 >= edges.least[0] && e1 >= edges.least[1] && e2 >= edges.least[2] &&
+                    nearness > nearness_.at(i);
+        if constexpr (peels) {
+          const auto later = IndexLanes<double>(number) > load_index<double>(limit_number_, i);
+          seen = seen && (nearness < limit_.at(i) || (nearness == limit_.at(i) && mask_cast<N>(later)));
+        }
         if (none_of(seen)) continue;
         nearness_.put(i, seen, nearness);
         nearest_.put(i, mask_cast<IndexLanes<double>>(seen), IndexLanes<double>(number));
       }
+}
+
+template <bool peels>
+void TileRaster::draw_triangles() {
+  const int across = tile_.x0 / kTileSide, down = tile_.y0 / kTileSide;
+  const auto number = static_cast<std::size_t>(down * screen_.tiles_across + across);
+  for (std::size_t c = 0; c < screen_.chunks.size(); ++c) {
+    const Screen::Chunk& chunk = screen_.chunks[c];
+    checkpoint();
+    const std::uint32_t end = chunk.first[number + 1];
+    for (std::uint32_t i = chunk.first[number]; i < end; ++i) {
+      prefetch_lines(chunk.triangles[chunk.list[std::min(i + kAhead, end - 1)]]);
+      draw<peels>(chunk.triangles[chunk.list[i]], static_cast<std::int64_t>(c << 32 | chunk.list[i]));
+    }
+  }
+}
+
+void TileRaster::draw(const TileView& tile, const TileSamples& samples) {
+  tile_ = tile;
+  known_ = -1;
+  reach_ = 0;
+  for (int slot = 0; slot < kBatch; ++slot) {
+    const auto place = [&](int pixel, float within) {
+      reach_ = std::max(reach_, std::fabs(within - 0.5) * kSubpixels + 1);
+      return std::floor((pixel + double{within}) * kSubpixels);
+    };
+    const TilePixel pixel = tile_pixel(slot);
+    x_[slot] = place(pixel.x, samples.u[slot]);
+    y_[slot] = place(pixel.y, samples.v[slot]);
+    nearness_[slot] = -std::numeric_limits<double>::infinity();
+    nearest_[slot] = -1;
+  }
+  draw_triangles<false>();
+}
+
+void TileRaster::peel(const std::array<bool, kBatch>& wanted) {
+  constexpr double kNone = -std::numeric_limits<double>::infinity();
+  for (int slot = 0; slot < kBatch; ++slot) {
+    limit_[slot] = wanted[static_cast<std::size_t>(slot)] ? nearness_[slot] : kNone;
+    limit_number_[slot] = nearest_[slot];
+    nearness_[slot] = kNone;
+    nearest_[slot] = -1;
+  }
+  draw_triangles<true>();
 }
 
 Vec3d TileRaster::weights(int slot) {

@@ -16,6 +16,11 @@ class TileRaster {
   // on an edge belongs to the triangle that is below or to the right of the edge (top-left rule), so exactly
   // one of the triangles that share an edge covers the sample.
   void draw(const TileView& tile, const TileSamples& samples);
+  // Finds the next triangle behind the known one at each sample for which `wanted` is true (depth peeling;
+  // Everitt, "Interactive Order-Independent Transparency", 2001). All other samples become uncovered. At
+  // equal depths, the triangles follow in their order. REQUIRES: draw() was called, and wanted samples are
+  // covered.
+  void peel(const std::array<bool, kBatch>& wanted);
 
   bool covered(int slot) const { return nearest_[slot] >= 0; }
   // Returns the number in Tessellation::triangles of the triangle at a sample. REQUIRES: covered(slot).
@@ -33,6 +38,10 @@ class TileRaster {
     double area;                  // twice the area: the sum of the edge functions
   };
   Edges edges_of(const ScreenTriangle& triangle) const;
+  // Draws all triangles of the tile. `peels`: only those behind the limits.
+  template <bool peels>
+  void draw_triangles();
+  template <bool peels>
   void draw(const ScreenTriangle& triangle, std::int64_t number);
   const ScreenTriangle& found(int slot) const {
     return chunk_of(slot).triangles[static_cast<std::uint32_t>(nearest_[slot])];
@@ -48,8 +57,12 @@ class TileRaster {
   double reach_ = 0;     // largest distance of a sample from the centre of its pixel, subpixels
   Array<double> nearness_;
   Array<std::int64_t> nearest_;  // chunk * 2^32 + triangle of the chunk, or -1
-  Edges edges_{};                // edges of triangle `known_`
-  std::int64_t known_ = -1;      // as in nearest_
+  // While peeling: nearness_ and nearest_ of the previous layer, or -infinity for samples that are not
+  // wanted.
+  Array<double> limit_;
+  Array<std::int64_t> limit_number_;
+  Edges edges_{};            // edges of triangle `known_`
+  std::int64_t known_ = -1;  // as in nearest_
 };
 
 }  // namespace orrery

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/lighting/specular.h"
 #include "core/lighting/surfaces.h"
 #include "core/math/face_normal.h"
 
@@ -12,6 +13,7 @@ ScanLine<T>::ScanLine(const World<T>& world, const Plan& plan, ShadingPoints poi
     : SpecularTree<T>(world, plan),
       screen_(*world.screen),
       shading_(points),
+      has_straight_(world.geometry->scene->facts.materials.straight),
       raster_(*world.screen, *plan.asked.interpolation == Interpolation::perspective),
       point_paths_(std::make_unique<PathBatch<T>>()) {}
 
@@ -24,21 +26,38 @@ void ScanLine<T>::place(const TileView& tile, const TileSamples& samples) {
 template <class T>
 void ScanLine<T>::begin() {
   raster_.draw(*tile_, *samples_);
+  layer_ = 0;
   if (shading_ != ShadingPoints::pixels) shade_points();
+}
+
+template <class T>
+void ScanLine<T>::next_layer() {
+  auto& v = *this->vertices_;
+  PathBatch<T>& paths = *v.paths;
+  layer_ = paths.depth;
+  std::array<bool, kBatch> wanted{};
+  for (int lane = 0; lane < paths.rays.count; ++lane)
+    wanted[static_cast<std::size_t>(paths.slot[lane])] = true;
+  raster_.peel(wanted);
+  if (shading_ == ShadingPoints::pixels) return;
+  shade_points();
+  v.paths = &paths;
 }
 
 template <class T>
 LaneGroups ScanLine<T>::find_vertices(const LaneGroups& groups) {
   auto& v = *this->vertices_;
-  const bool needs_surfaces =
-      shading_ == ShadingPoints::pixels || !this->plan_.channels.empty() || this->atmosphere_;
+  if (v.paths->depth != layer_) next_layer();
+  const bool needs_surfaces = shading_ == ShadingPoints::pixels || !this->plan_.channels.empty() ||
+                              this->atmosphere_ || has_straight_;
   reset(v.paths->rays, groups, v.hits);
   for (const int i : groups)
-    for (int slot = i; slot < i + kWidth<T>; ++slot) {
-      if (!raster_.covered(slot) || !(v.paths->rays.t_max[slot] > 0)) continue;
+    for (int lane = i; lane < i + kWidth<T>; ++lane) {
+      const int slot = slot_of(lane);
+      if (!(v.paths->rays.t_max[lane] > 0) || !raster_.covered(slot)) continue;
       use_facet(raster_.triangle(slot));
-      v.hits.primitive[slot] = facet_.primitive;
-      if (needs_surfaces) put_surface(slot, raster_.weights(slot), v.paths->rays[slot]);
+      v.hits.primitive[lane] = facet_.primitive;
+      if (needs_surfaces) put_surface(lane, raster_.weights(slot), v.paths->rays[lane]);
     }
   const LaneGroups met = start_surfaces(this->geometry_, groups, v.hits, v.surface, v.radiance);
   if (needs_surfaces) add_fields(this->geometry_, this->plan_.fields, *v.paths, met, v.hits, v.surface);
@@ -50,25 +69,41 @@ void ScanLine<T>::shade_surfaces(const LaneGroups& met) {
   if (shading_ == ShadingPoints::pixels) return SpecularTree<T>::shade_surfaces(met);
   auto& v = *this->vertices_;
   for (const int i : met)
-    for (int slot = i; slot < i + kWidth<T>; ++slot) {
-      if (v.hits.primitive[slot] == kNoPrimitive) continue;
+    for (int lane = i; lane < i + kWidth<T>; ++lane) {
+      if (v.hits.primitive[lane] == kNoPrimitive) continue;
+      const int slot = slot_of(lane);
       const Point* const points = &points_[static_cast<std::size_t>(point_of_[slot])];
       if (shading_ == ShadingPoints::triangles) {
-        v.radiance.set(slot, points[0].radiance);
+        v.radiance.set(lane, points[0].radiance);
       } else {
         const Vec3<T> weights(raster_.weights(slot));
-        v.radiance.set(slot, points[0].radiance * weights.x + points[1].radiance * weights.y +
+        v.radiance.set(lane, points[0].radiance * weights.x + points[1].radiance * weights.y +
                                  points[2].radiance * weights.z);
       }
     }
+  if (!has_straight_) return;
+  const LaneGroups straight = groups_with(this->geometry_, v.surface, met, &MaterialTraits::straight);
+  evaluate_specular(this->geometry_, false, v.hits, v.surface, straight, *v.paths, this->specular_);
+  for (const int i : straight) follow_straight(i);
 }
 
 template <class T>
 void ScanLine<T>::scatter(const LaneGroups& groups) {
   const auto& specular = this->specular_;
-  for (const int i : groups)
+  for (const int i : groups) {
+    const auto straight = lanes_with(this->geometry_, this->vertices_->surface, i, &MaterialTraits::straight);
+    const auto bent = this->specular_lanes(i) && !straight;
     for (const Vec3<N>& weight : {specular.reflectance.at(i), specular.transmittance.at(i)})
-      this->add_ambient(i, this->specular_lanes(i), weight);
+      this->add_ambient(i, bent, weight);
+    if (shading_ == ShadingPoints::pixels) follow_straight(i);
+  }
+}
+
+template <class T>
+void ScanLine<T>::follow_straight(int i) {
+  const auto straight = lanes_with(this->geometry_, this->vertices_->surface, i, &MaterialTraits::straight);
+  this->follow(SpecularTree<T>::Kind::refracted, i, straight, this->specular_.refracted.at(i),
+               this->specular_.transmittance.at(i));
 }
 
 template <class T>

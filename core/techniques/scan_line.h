@@ -31,6 +31,15 @@ class ScanLine : public SpecularTree<T> {
   void shade_surfaces(const LaneGroups& met) final;
   void scatter(const LaneGroups& groups) final;
 
+  // Finds the triangles behind transparent ones for the rays of the batch, and lights them as begin() does.
+  void next_layer();
+  // Continues rays behind transparent surfaces that do not refract, in the lanes of specular_.
+  void follow_straight(int i);
+  // Returns the sample of lane `lane` of the current batch.
+  int slot_of(int lane) const {
+    const PathBatch<T>& paths = *this->vertices_->paths;
+    return paths.depth == 0 ? lane : static_cast<int>(paths.slot[lane]);
+  }
   // Finds the distinct visible triangles of the tile, and evaluates light at their shading points.
   void shade_points();
   // Evaluates light at points_[first] to points_[last - 1].
@@ -58,7 +67,9 @@ class ScanLine : public SpecularTree<T> {
 
   const Screen& screen_;
   const ShadingPoints shading_;
+  const bool has_straight_;  // some material transmits without refraction
   TileRaster raster_;
+  int layer_ = 0;            // depth of the rays for which raster_ has the triangles
   const TileView* tile_ = nullptr;
   const TileSamples* samples_ = nullptr;
   Facet facet_;

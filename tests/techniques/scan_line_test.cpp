@@ -299,6 +299,71 @@ TEST(ScanLine, GivesSameBytesForAnyThreadsAndSlices) {
   }
 }
 
+// Panes of colours k / 8 at z = 0, -1, ..., listed from the middle outward, over a background of 0.9.
+Json panes(int count, const char* blend) {
+  Json objects = Json::array(), materials;
+  for (int k = 0; k < count; ++k) {
+    const int place = (k * 3 + 1) % count;  // no order of depth
+    const std::string name = "pane" + std::to_string(place);
+    materials[name] = {{"type", "transparent"},
+                       {"blend", blend},
+                       {"ka", (place + 1) / 8.0},
+                       {"kd", 0},
+                       {"kt", 0.3 + 0.1 * place}};
+    if (std::string_view(blend) == "filtered") materials[name]["transmission_color"] = {0.5, 0.8, 1};
+    objects.push_back({{"type", "rectangle"},
+                       {"corner", {-9, -9, -place}},
+                       {"edge_u", {18, 0, 0}},
+                       {"edge_v", {0, 18, 0}},
+                       {"material", name}});
+  }
+  return scene_with(objects, {{"materials", materials},
+                              {"ambient", {1, 1, 1}},
+                              {"background", {0.9, 0.9, 0.9}},
+                              {"camera", parallel_camera()}});
+}
+
+TEST(ScanLine, BlendsTransparentSurfacesInOrderOfDepth) {
+  for (const char* technique : {"flat", "gouraud", "phong"})
+    for (const char* blend : {"interpolated", "filtered"})
+      for (const int count : {1, 2, 4, 5}) {
+        SCOPED_TRACE(testing::Message() << technique << ' ' << blend << ' ' << count);
+        const bool filtered = std::string_view(blend) == "filtered";
+        Vec3d expected(0.9);
+        for (int place = count - 1; place >= 0; --place) {
+          const double kt = 0.3 + 0.1 * place, own = (place + 1) / 8.0;
+          expected = filtered ? Vec3d(own) + Vec3d(0.5, 0.8, 1) * kt * expected
+                              : Vec3d(own * (1 - kt)) + expected * kt;
+        }
+        const Picture picture = render(panes(count, blend), in_double(by(technique)));
+        for (const int x : {0, 20, 63}) {
+          EXPECT_NEAR(picture.at(x, 31).x, expected.x, 1e-6);
+          EXPECT_NEAR(picture.at(x, 31).y, expected.y, 1e-6);
+          EXPECT_NEAR(picture.at(x, 31).z, expected.z, 1e-6);
+        }
+      }
+}
+
+// Both faces of each ball, a ball inside another one, and opaque shapes in front and behind, without shadows.
+TEST(ScanLine, BlendsTransparentBodiesAsWhitted) {
+  Json scene = scene_of(
+      "[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1.2, 'material': 'outer'},"
+      " {'type': 'sphere', 'center': [0.2, 0.1, 0], 'radius': 0.6, 'material': 'inner'},"
+      " {'type': 'box', 'min': [-0.4, -2, -3], 'max': [0.4, 2, -2], 'material': 'white'},"
+      " {'type': 'sphere', 'center': [0.5, 0.2, 2], 'radius': 0.2, 'material': 'white'}]",
+      "{'ambient': [1, 1, 1], 'background': [0.2, 0.5, 0.9]}");
+  scene["materials"]["outer"] = {{"type", "transparent"}, {"kd", {0.8, 0.3, 0.1}}, {"kt", 0.6}};
+  scene["materials"]["inner"] = {{"type", "transparent"},
+                                 {"blend", "filtered"},
+                                 {"kd", 0.1},
+                                 {"kt", 0.8},
+                                 {"transmission_color", {0.2, 1, 0.4}}};
+  scene["camera"] = parallel_camera();
+  const Picture drawn = render(scene, in_double(by("phong"))),
+                traced = render(scene, in_double(by("whitted")));
+  EXPECT_LE(differing_pixels(drawn, traced, 1e-6), 90) << "silhouettes";
+}
+
 TEST(ScanLine, RendersEverySampleScene) {
   for (const std::string& name : sample_names()) {
     const Json scene = sample(name);
