@@ -14,7 +14,7 @@
 // missed. If the nets, multiplied by the inverse of their mean Jacobian matrix, differ from the identity by a
 // contraction, the piece has at most one hit, and Newton's iteration from the centre finds it. Other pieces
 // are halved until every part is missed, is such a piece, or is within the tolerance of the ray. The search
-// is exhaustive up to kMaxParts parts. Of 3,000 rays that graze a tube, a sphere or a torus, none uses more
+// is exhaustive up to kMaxParts parts. XX a tube, a sphere or a torus, none uses more
 // than 2,500.
 namespace orrery {
 
@@ -426,7 +426,7 @@ class BezierRays {
   const T* net_;
   Vec3<N> across_a_, across_b_, along_;
   N a_, b_, t_;
-  N tolerance_;  // of coordinates times weights
+  N tolerance_;  // bound of coordinates times weights
 };
 
 }  // namespace orrery

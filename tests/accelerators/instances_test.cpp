@@ -172,6 +172,50 @@ TEST(Instance, MatchesBakedMesh) {
   EXPECT_LE(other, 5);
 }
 
+// Returns the distance to the ellipsoid that a place makes of the unit sphere, or infinity. Solves the
+// quadric in long double. Sets `grazing` if the ray nearly touches the ellipsoid.
+long double ellipsoid_distance(const Place& place, const Ray<double>& ray, bool& grazing) {
+  using Vec = Vec3<long double>;
+  const Affined map = place.world_from_model();
+  const Vec x(map.x), y(map.y), z(map.z);
+  const long double determinant = dot(x, cross(y, z));
+  const auto in_model = [&](const Vec& v) {
+    return Vec(dot(v, cross(y, z)), dot(v, cross(z, x)), dot(v, cross(x, y))) / determinant;
+  };
+  const Vec o = in_model(Vec(ray.origin) - Vec(map.origin)), d = in_model(Vec(ray.direction));
+  const long double a = dot(d, d), b = dot(o, d), c = dot(o, o) - 1;
+  const Vec nearest = o - d * (b / a);
+  const long double inside = 1 - dot(nearest, nearest);
+  grazing = grazing || std::abs(inside) < 1e-3L;
+  if (inside < 0) return std::numeric_limits<long double>::infinity();
+  const long double root = std::sqrt(a * inside), near = (-b - root) / a, far = (-b + root) / a;
+  grazing = grazing || std::abs(c) < 1e-3L;
+  return near > 0 ? near : far > 0 ? far : std::numeric_limits<long double>::infinity();
+}
+
+TEST(Instance, MakesEllipsoidOfSphere) {
+  covers("A38");
+  const Json ball = {{"type", "sphere"}, {"center", {0, 0, 0}}, {"radius", 1}, {"material", "white"}};
+  Structure<double> placed(scene_of_places(ball), "bottom-up");
+  const Rays<double> rays = rays_around<double>(50'000, 6);
+  const auto found = placed.closest(rays);
+  long double worst = 0;
+  int met = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    bool grazing = false;
+    long double exact = std::numeric_limits<long double>::infinity();
+    for (const Place& place : kPlaces) exact = std::min(exact, ellipsoid_distance(place, rays[i], grazing));
+    if (grazing || (found[i].met() && found[i].primitive == 0)) continue;
+    ASSERT_EQ(found[i].met(), std::isfinite(exact));
+    if (!found[i].met()) continue;
+    ++met;
+    worst = std::max(worst, std::abs(static_cast<long double>(found[i].t) - exact) / std::max(exact, 1.0L));
+  }
+  std::printf("ellipsoids: largest relative error %.2Lg of %d hits\n", worst, met);
+  EXPECT_LE(worst, 1e-12L);
+  EXPECT_GT(met, 10'000);
+}
+
 // Returns the outward normal of a triangle of a placed ball, in world coordinates.
 Vec3d world_normal(const Json& model, std::size_t triangle, const Place& place) {
   const Affined world_from_model = place.world_from_model();

@@ -63,6 +63,12 @@ std::string povray_scene(const Json& scene, const PovrayOptions& options) {
     materials.emplace(name, povray::material_of(material, scene.value("textures", Json::object())));
   for (const Json& object : scene.at("objects"))
     out += object_of(object, materials.at(object.at("material")));
+  for (const Json& instance : scene.value("instances", Json::array())) {
+    out += "union {\n";
+    for (const Json& object : scene.at("models").at(instance.at("model")).at("objects"))
+      out += object_of(object, materials.at(object.at("material")));
+    out += povray::placement_of(instance) + "}\n";
+  }
   return out;
 }
 

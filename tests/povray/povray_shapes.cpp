@@ -1,3 +1,4 @@
+#include "core/math/affine.h"
 #include "core/math/hemisphere.h"
 #include "tests/povray/povray_scene.h"
 #include "tests/povray/povray_text.h"
@@ -78,6 +79,17 @@ std::string bicubic_patches(const Json& o) {
 }
 
 }  // namespace
+
+std::string placement_of(const Json& o) {
+  const Json turn = o.value("rotate", Json::object());
+  const Affined rotated =
+      rotation(safe_normalize(vector_of(turn, "axis", Vec3d(0, 1, 0))), turn.value("degrees", 0.0));
+  const Vec3d scale = vector_of(o, "scale", Vec3d(1)), move = vector_of(o, "translate", Vec3d(0));
+  std::string rows;
+  for (const Vec3d& row : {rotated.x * scale.x, rotated.y * scale.y, rotated.z * scale.z, move})
+    rows += (rows.empty() ? "" : ", ") + text(row.x) + ", " + text(row.y) + ", " + text(row.z);
+  return "matrix <" + rows + "> ";
+}
 
 std::string shape_of(const Json& o) {
   const std::string type = o.at("type");

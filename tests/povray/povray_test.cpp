@@ -66,6 +66,7 @@ const Case kCases[] = {
     {"fog", "tests/povray/scenes/fog.json"},
     {"checkers", "tests/povray/scenes/checkers.json"},
     {"images", "tests/povray/scenes/images.json"},
+    {"ellipsoids", "tests/povray/scenes/ellipsoids.json"},
     {"patches", "tests/povray/scenes/patches.json"},
     {"orthographic", "tests/povray/scenes/orthographic.json"},
 };

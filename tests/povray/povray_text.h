@@ -45,6 +45,9 @@ std::string pigment_of(const Json& use, const Json& textures, const Vec3d& facto
 // Returns the object without its closing brace, so that modifiers can follow.
 std::string shape_of(const Json& object);
 
+// Returns the modifier that places a model as an instance.
+std::string placement_of(const Json& instance);
+
 std::string light_of(const Json& light, double exposure);
 
 }  // namespace orrery::povray

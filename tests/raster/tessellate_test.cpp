@@ -65,6 +65,13 @@ TEST(Tessellate, StaysWithinErrorOnCurvedShapes) {
                           {"axis", {0, 1, 0}},
                           {"major_radius", radius * 0.7},
                           {"minor_radius", radius * 0.3}};
+      Json nurbs = {{"type", "nurbs"},         {"degree_u", 2},
+                    {"degree_v", 1},           {"knots_u", {0, 0, 0, 1, 1, 1}},
+                    {"knots_v", {0, 0, 1, 1}}, {"weights", {1, std::sqrt(0.5), 1, 1, std::sqrt(0.5), 1}}};
+      for (const double y : {-1.0, 1.0})  // a quarter of the cylinder
+        for (const auto& [x, z] : {std::pair{1, 0}, {1, 1}, {0, 1}})
+          nurbs["points"].push_back({x * radius, y, z * radius});
+      check(nurbs, [&](const Vec3d& p) { return radius - std::hypot(p.x, p.z); });
       check(sphere, [&](const Vec3d& p) { return radius - length(p); });
       check(cylinder, [&](const Vec3d& p) {  // the caps are exact
         return std::abs(p.y) < 1 ? radius - std::hypot(p.x, p.z) : 0;
