@@ -14,8 +14,8 @@
 // missed. If the nets, multiplied by the inverse of their mean Jacobian matrix, differ from the identity by a
 // contraction, the piece has at most one hit, and Newton's iteration from the centre finds it. Other pieces
 // are halved until every part is missed, is such a piece, or is within the tolerance of the ray. The search
-// is exhaustive up to kMaxParts parts. XX a tube, a sphere or a torus, none uses more
-// than 2,500.
+// is exhaustive up to kMaxParts parts. Grazing rays of a tube, a sphere and a torus use up to
+// 2,500.
 namespace orrery {
 
 // Nearest hit of a ray and a piece. t is infinity for a miss. u and v are parameters of the piece.
@@ -375,7 +375,7 @@ class BezierRays {
     return between(high);
   }
 
-  // Returns whether a root may be in the part, up to rounding. Roots beside the part belong to its
+  // Returns whether a root may be in the part, up to rounding. Roots outside the part belong to its
   // neighbours.
   static bool within_part(T x) {
     const T slack = std::sqrt(std::numeric_limits<T>::epsilon());

@@ -27,8 +27,8 @@ BezierPoint<N> bezier_point(const BezierPiece<T>& piece, const T* net, const N& 
   return point;
 }
 
-// Returns the unit normal along du x dv. Where an edge of the piece is collapsed to a point, du or dv is 0
-// there. Within sqrt(epsilon) of such a place, returns the normal at this distance toward the centre.
+// Returns the unit normal along du x dv. An edge that is collapsed to a point has a du or
+// dv of 0. Within sqrt(epsilon) of such a place, returns the normal at this distance toward the centre.
 template <class N, class T>
 Vec3<N> bezier_normal(const BezierPiece<T>& piece, const T* net, const N& u, const N& v,
                       const BezierPoint<N>& point) {

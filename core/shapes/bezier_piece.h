@@ -29,7 +29,7 @@ struct BezierPiece {
   bool rational;
   std::size_t first;  // index of its net in BezierTable::nets
   Vec3<T> origin;
-  T radius;  // of a sphere around `origin` that contains the control points
+  T radius;  // radius of a sphere around `origin` that contains the control points
   T reach;   // largest absolute coordinate of a control point, relative to `origin`
   T weight;  // largest weight
   T u0, u1, v0, v1;

@@ -202,7 +202,7 @@ int BezierSet::add(Params& params, MeshSource&) {
 }
 
 bool BezierSet::add_pieces(const BezierPatch& patch, double magnitude) {
-  constexpr int kMaxCuts = 10;  // of one patch in sequence
+  constexpr int kMaxCuts = 10;  // limit for one patch, in sequence
   struct Part {
     BezierPatch patch;
     int cuts;

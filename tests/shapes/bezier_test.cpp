@@ -135,7 +135,7 @@ void check_patches(const char* type) {
       const auto ray = convert_ray<long double>(cast[i]);
       const long double unit =
           static_cast<long double>(std::numeric_limits<T>::epsilon()) * (max_component(abs(ray.origin)) + 2);
-      // Rounding may move a ray at the border of the patch beside it.
+      // Rounding may move a ray at the border of the patch out of it.
       if (!hits[i].met || static_cast<long double>(hits[i].t) > reach[i] * (1 + 1e-4L)) {
         ++missed;
         continue;
