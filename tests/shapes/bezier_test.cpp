@@ -253,18 +253,18 @@ TEST(Bezier, DecidesTangentRays) {
   }
 }
 
-// A fan of triangles: the patch's edge v = 1 is the point (0, 0, 1).
+// The edge v = 1 of the patch is the point (1, 0, 0).
 TEST(Bezier, HasNormalsAtPoles) {
   covers("A26");
   const auto cap = Target<double>::of_objects(
-      "[{'type': 'patch', 'degree_u': 1, 'degree_v': 2, 'points': [[1, 0, 0], [0, 1, 0], [1, 0, 1], [0, 1, "
-      "1], [0, 0, 1], [0, 0, 1]]}]");
+      "[{'type': 'patch', 'degree_u': 1, 'degree_v': 2, 'points': [[0, 1, 0], [0, 0, 1], [1, 1, 0], [1, 0, "
+      "1], [1, 0, 0], [1, 0, 0]]}]");
   for (const double away : {0.0, 1e-15, 1e-12, 1e-9, 1e-6}) {
-    const Ray<double> ray{{away, away, 3}, {0, 0, -1}};
+    const Ray<double> ray{{3, away, away}, {-1, 0, 0}};
     const auto hit = cap.closest(ray);
     ASSERT_TRUE(hit.met()) << away;
     EXPECT_NEAR(hit.t, 2 + away * away, 1e-15);
-    EXPECT_LE(length(cross(cap.surface(ray, hit).geometric, Vec3d(0, 0, 1))), 1e-6 + 4 * away) << away;
+    EXPECT_LE(length(cross(cap.surface(ray, hit).geometric, Vec3d(1, 0, 0))), 1e-6 + 4 * away) << away;
   }
 }
 
