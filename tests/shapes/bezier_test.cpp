@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/math/bernstein.h"
+#include "core/shapes/bezier_kernel.h"
 #include "tests/support/batches.h"
 #include "tests/support/covers.h"
 #include "tests/support/exhaustive.h"
@@ -266,6 +266,22 @@ TEST(Bezier, HasNormalsAtPoles) {
     EXPECT_NEAR(hit.t, 2 + away * away, 1e-15);
     EXPECT_LE(length(cross(cap.surface(ray, hit).geometric, Vec3d(1, 0, 0))), 1e-6 + 4 * away) << away;
   }
+}
+
+// At the parameters of a pole, a derivative is 0.
+TEST(Bezier, HasNormalsAtParametersOfPoles) {
+  covers("A26");
+  const std::array<double, 18> net{0, 0, 1, 1, 1, 1, 1, 0, 1,
+                                   0, 0, 0, 0, 1, 0, 1, 0, 0};  // x, y, z of the patch above
+  BezierPiece<double> piece{};
+  piece.degrees = {1, 2};
+  piece.radius = 1;
+  for (const double u : {0.0, 0.3, 1.0})
+    for (const double v : {1.0, 1 - 1e-15, 1 - 1e-9}) {
+      const BezierPoint<double> point = bezier_point<double>(piece, net.data(), u, v);
+      const Vec3d normal = bezier_normal<double>(piece, net.data(), u, v, point);
+      EXPECT_LE(length(normal - Vec3d(1, 0, 0)), 1e-6) << u << " " << v;
+    }
 }
 
 }  // namespace
