@@ -89,7 +89,7 @@ class MediaStage {
   MediaLists behind_;  // by ray: media behind its surface
   Array<T> relative_index_;
   Array<T> passed_;      // metres from the ray's origin to the last surface that it passed
-  Vec3Array<T> origin_;  // of rays with passed_ > 0
+  Vec3Array<T> origin_;  // origins of rays with passed_ > 0
   std::array<bool, kBatchRoom> settled_;
 };
 

@@ -15,7 +15,7 @@ namespace orrery {
 // Optical properties of the inside of a body.
 struct Medium {
   double ior = 1;             // index of refraction; air: 1
-  double priority = 0;        // where bodies overlap, the body of highest priority displaces the others
+  double priority = 0;        // a body displaces overlapping bodies of lower priority
   Vec3d log2_filter;          // log2 of the transmittance per metre
   bool refracts_only = true;  // the surface does nothing but reflect and refract
 };

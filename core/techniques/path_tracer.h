@@ -62,7 +62,7 @@ class PathTracer : public Wavefront<T> {
 
   const Lobes followed_;
   SampledLight<T> sampled_light_;
-  const bool has_emission_pass_;
+  const bool has_emission_pass_;  // false if camera rays may pass surfaces: see MediaStage::pass()
   std::unique_ptr<DiffuseRays<T>> diffuse_rays_;  // null unless SampledLight::wants_diffuse_rays()
   std::unique_ptr<PathReuse<T>> reuse_;           // null without path reuse
   std::unique_ptr<Vec3Array<T>> indirect_;        // by camera ray; null without clamping

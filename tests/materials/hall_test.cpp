@@ -96,7 +96,7 @@ TEST(Hall, TransmitsHighlightAlongRefractingFacet) {
   };
   const double worst =
       worst_error("{'type': 'hall', 'ks': 0, 'kt': 0.9, 'transmitted_shininess': 7}", true, expected);
-  EXPECT_LE(worst, 1e-13);
+  EXPECT_LE(worst, 1e-11) << "V + m L cancels near the axis";
   RecordProperty("worst_error", std::to_string(worst));
 }
 

@@ -28,6 +28,7 @@ struct Case {
   const char* file;
   RenderRequest request = {};
   const char* povray_file = nullptr;  // hand-written, with an image clamped at 1. nullptr: exported
+  double max_rms = kLargestRms;
 
   float brightest() const { return povray_file ? 1 : 4; }  // clamp of both images
 };
@@ -56,7 +57,9 @@ const Case kCases[] = {
     {"glass", "tests/povray/scenes/glass.json"},
     {"filter", "tests/povray/scenes/filter.json"},
     {"transparency", "tests/povray/scenes/transparency.json"},
-    {"nested_media", "tests/povray/scenes/nested_media.json"},
+    // POV-Ray omits the Fresnel reflection of rays that enter a body inside another body: a plate of glass
+    // around air transmits 0.8889 instead of 0.8571.
+    {"nested_media", "tests/povray/scenes/nested_media.json", {}, nullptr, 0.004},
     {"mesh", "tests/povray/scenes/mesh.json"},
     {"corridor", "tests/povray/scenes/corridor.json"},
     {"corridor_of_depth_2", "tests/povray/scenes/corridor.json", depth_request(2)},
@@ -135,7 +138,7 @@ TEST_P(Povray, RendersSameImage) {
   std::printf("%-22s RMS %.6f (all pixels %.6f), %.2f %% excluded, largest %.4f at (%d, %d)\n", c.name,
               result.rms, result.rms_of_all, 100 * result.left_out, result.largest, result.largest_x,
               result.largest_y);
-  EXPECT_LE(result.rms, kLargestRms);
+  EXPECT_LE(result.rms, c.max_rms);
   EXPECT_LE(result.left_out, kMaxOmitted);
 }
 

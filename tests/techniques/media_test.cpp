@@ -7,7 +7,7 @@
 #include "tests/support/pictures.h"
 #include "tests/support/tracing.h"
 
-// Tests transparent bodies inside, beside and across each other.
+// Tests transparent bodies that contain, touch or overlap each other.
 namespace orrery::test {
 namespace {
 
@@ -62,14 +62,15 @@ bool has_angle(const Tracing& tracing, double degrees) {
   return false;
 }
 
-// Fraction of light that a stack of parallel layers reflects and transmits, without interference.
+// Fractions of light that a stack of parallel layers transmits, and reflects on its first and last side,
+// without interference.
 struct Stack {
-  long double reflected = 0, transmitted = 1;
+  long double transmitted = 1, front = 0, back = 0;
 
   Stack then(const Stack& next) const {
-    const long double rest = 1 - reflected * next.reflected;
-    return {reflected + transmitted * transmitted * next.reflected / rest,
-            transmitted * next.transmitted / rest};
+    const long double rest = 1 - back * next.front;
+    return {transmitted * next.transmitted / rest, front + transmitted * transmitted * next.front / rest,
+            next.back + next.transmitted * next.transmitted * back / rest};
   }
 };
 // Fresnel's equations for unpolarized light. `sine` is the sine of the angle in air.
@@ -79,10 +80,10 @@ Stack interface(long double from, long double to, long double sine) {
   const long double s = (from * a - to * b) / (from * a + to * b),
                     p = (to * a - from * b) / (to * a + from * b);
   const long double r = (s * s + p * p) / 2;
-  return {r, 1 - r};
+  return {1 - r, r, r};
 }
 Stack absorber(long double per_metre, long double thickness, long double index, long double sine) {
-  return {0, std::pow(per_metre, thickness / std::sqrt(1 - sine * sine / (index * index)))};
+  return {std::pow(per_metre, thickness / std::sqrt(1 - sine * sine / (index * index)))};
 }
 
 TEST(NestedMedia, MatchesPlatesOfThreeMedia) {
