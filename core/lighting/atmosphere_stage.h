@@ -31,8 +31,8 @@ class AtmosphereStage {
   }
 
   // Multiplies the throughput of `groups` by the shares, so that rays spawned from the hits are attenuated.
-  // There is no atmosphere inside bodies: around rays that know their media, or else before hits on the inside
-  // of a material that transmits light.
+  // There is no atmosphere inside bodies: around rays that know their media, or else before hits on the
+  // inside of a material that transmits light.
   void enter(const HitBatch<T>& hits, const SurfaceBatch<T>& surface, const LaneGroups& groups,
              const LaneGroups& met, PathBatch<T>& paths) {
     find(paths.rays, paths.depth, hits, groups);

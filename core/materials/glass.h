@@ -169,7 +169,7 @@ struct Glass {
 template <class N>
 struct GlassInputs {
   Vec3<N> filter;
-  N ior, roughness, priority;
+  N ior, priority, roughness;
   N alpha;
   FacetAlbedo<N> outside, inside;
   N through_outside, through_inside;

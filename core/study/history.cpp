@@ -52,6 +52,8 @@ History::History(const Scene& scene, const RenderRequest& view) : scene_(scene),
     width_ = plan.width;
     height_ = plan.height;
     steps_.back().missing = plan.not_followed;
+    if (scene.facts.materials.emits && !technique->draws_light)
+      steps_.back().missing.push_back("the light of lamps");
   }
 }
 

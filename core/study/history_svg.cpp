@@ -36,7 +36,7 @@ std::string draw_step(const History& history, int number, double x, double y, do
   const bool last = number + 1 == history.pictures();
   const std::string rays = step.rays > 0 ? printed("%.3g M rays, ", double(step.rays) / 1e6) : "";
   text += svg_text(x, line += kLine,
-                   printed("%.3g ms CPU, ", step.cpu_ms) + rays +
+                   printed(step.cpu_ms < 100 ? "%.3g ms CPU, " : "%.0f ms CPU, ", step.cpu_ms) + rays +
                        (last ? std::string("reference") : printed("RMS %.2g", step.rms)));
   for (const std::string& words : lines_of(missing_sentence(step))) text += svg_text(x, line += kLine, words);
   return text;

@@ -69,7 +69,7 @@ class ScanLine : public SpecularTree<T> {
   const ShadingPoints shading_;
   const bool has_straight_;  // some material transmits without refraction
   TileRaster raster_;
-  int layer_ = 0;            // depth of the rays for which raster_ has the triangles
+  int layer_ = 0;  // depth of the rays for which raster_ has the triangles
   const TileView* tile_ = nullptr;
   const TileSamples* samples_ = nullptr;
   Facet facet_;

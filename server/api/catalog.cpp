@@ -3,8 +3,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/accelerators/registry.h"
+#include "core/atmospheres/registry.h"
 #include "core/cameras/registry.h"
 #include "core/channels/registry.h"
+#include "core/environments/registry.h"
 #include "core/lights/registry.h"
 #include "core/materials/registry.h"
 #include "core/shapes/registry.h"
@@ -69,6 +71,8 @@ ordered_json catalog_json() {
           {"materials", entries_of(material_types())},
           {"textures", entries_of(texture_types())},
           {"lights", entries_of(light_types())},
+          {"environments", entries_of(environment_types())},
+          {"atmospheres", entries_of(atmosphere_types())},
           {"cameras", entries_of(camera_types())},
           {"channels", channels()},
           {"techniques", techniques()},

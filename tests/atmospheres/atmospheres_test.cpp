@@ -77,6 +77,23 @@ TEST(DepthCue, BlendsByDepthBetweenPlanes) {
   }
 }
 
+// A wall fills the view of a perspective camera. Its depth is the same in all pixels, its distance is not.
+TEST(DepthCue, UsesDepthAlongViewAxis) {
+  Json scene = walls({0}, {{"type", "depth_cue"}, {"color", {0, 0, 0}}, {"front", 2}, {"back", 6}});
+  scene["objects"][0]["corner"] = {-50, -50, -3};
+  scene["objects"][0]["edge_u"] = {100, 0, 0};
+  scene["objects"][0]["edge_v"] = {0, 100, 0};
+  scene["camera"] = {
+      {"type", "perspective"}, {"eye", {0, 0, 0}}, {"look_at", {0, 0, -1}}, {"fov_degrees", 100}};
+  for (const char* technique : {"phong", "whitted"}) {
+    RenderRequest request = walls_request(8, technique);
+    request.height = 8;
+    const Picture picture = render(scene, request);
+    for (const auto& [x, y] : {std::pair(0, 0), {4, 4}, {7, 3}})
+      expect_near(picture.at(x, y), kLight * 0.75, 1e-5, technique);  // phong rounds to subpixels
+  }
+}
+
 TEST(DepthCue, ReachesScalesExactlyAtPlanes) {
   for (const double front : {0.1, 1.0 / 3, 7.7}) {
     const DepthCue<double> cue{Vec3d(0), front, front * 3.3, 0.7, 0.3};

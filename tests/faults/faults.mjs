@@ -13,6 +13,7 @@
 import { certificateFaults } from "./certificates.mjs";
 import { serviceFaults } from "./service.mjs";
 import { structureFaults } from "./structures.mjs";
+import { systemFaults } from "./systems.mjs";
 import { textbookFaults } from "./textbook.mjs";
 import { textureFaults } from "./textures.mjs";
 import { transportFaults } from "./transport.mjs";
@@ -23,5 +24,6 @@ export const faults = [
   ...transportFaults,
   ...certificateFaults,
   ...serviceFaults,
+  ...systemFaults,
   ...textureFaults,
 ];

@@ -194,6 +194,7 @@ export const kGroups = [
         "shape-patch, shape-nurbs",
         "Bezier.MatchesDeCasteljauInDouble, Revolved.MatchesClosedFormTo1e12",
       ],
+      ["S", "ellipsoid", "`sphere` in `instances` with `scale`", "shape-ellipsoid", "Instance.MakesEllipsoidOfSphere"],
       ["S", "instances", "`models`, `instances`", "instances", "Instance.MatchesBakedMesh"],
     ],
   ],

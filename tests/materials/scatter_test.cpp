@@ -275,7 +275,8 @@ const Material kPaints[] = {
     {"HighlightAlone", "{'type': 'rough', 'kd': 0, 'ks': 0.5, 'shininess': 100}"},
     {"InterpolatedPane", "{'type': 'transparent', 'kd': [0.5, 0.2, 0], 'ks': 0.5, 'kt': 0.4}"},
     {"FilteredPane",
-     "{'type': 'transparent', 'kd': 0.5, 'blend': 'filtered', 'kt': 1.5, 'transmission_color': [1, 0.5, 0], 'ks': 0.3}"},
+     "{'type': 'transparent', 'kd': 0.5, 'blend': 'filtered', 'kt': 1.5, 'transmission_color': [1, 0.5, 0], "
+     "'ks': 0.3}"},
     {"ClearHall", "{'type': 'hall', 'kd': [0.3, 0.2, 0], 'kt_diffuse': 0.3, 'shininess': 9}", 1, 1.5},
     {"ClearHallFromInside", "{'type': 'hall', 'kd': 0.3, 'kt_diffuse': 0.3, 'shininess': 9}", -1, 1.5},
     {"OpaqueHall", "{'type': 'hall', 'kd': 0.3, 'ks': 0.5, 'kt': 0, 'ior': 3, 'shininess': 30}"},

@@ -81,7 +81,7 @@ Material transparent(const Json& m) {
   const Vec3d kd = coefficient_of(m, "kd", Vec3d(0.8)) * vector_of(m, "diffuse_color", Vec3d(1));
   if (m.contains("ka")) throw UnsupportedFeature("cannot export transparency: ka must be kd");
   if (m.value("blend", "interpolated") == "interpolated") {
-    const Material front = rough(m);
+    const Material front = rough(m, Json::object());
     const std::string pigment = "pigment { rgb " + text(kd);
     return {pigment + " transmit " + text(kt) + front.modifiers.substr(pigment.size()), true};
   }

@@ -106,6 +106,7 @@ function mutated(value) {
 const fit_one_another = [
   ...["eye", "look_at", "up", "min", "max", "vertices", "base", "top", "positions", "indices", "normals"],
   ...["attenuation", "inner_degrees", "outer_degrees"],
+  ...["points", "weights", "knots_u", "knots_v", "degree_u", "degree_v", "major_radius", "minor_radius"],
 ];
 const is_of_wrong_form = (change) => change === null || typeof change === "string" || typeof change === "boolean";
 function about_meaning(path, change) {

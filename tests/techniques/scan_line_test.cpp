@@ -344,6 +344,20 @@ TEST(ScanLine, BlendsTransparentSurfacesInOrderOfDepth) {
       }
 }
 
+TEST(ScanLine, BlendsCoincidentTransparentSurfaces) {
+  Json scene = panes(2, "interpolated");
+  for (Json& object : scene["objects"]) object["corner"] = {-9, -9, 0};
+  const Picture picture = render(scene, in_double(by("phong")));
+  const auto blended = [](int front, int back) {
+    const auto own = [](int place, double behind) {
+      const double kt = 0.3 + 0.1 * place;
+      return (place + 1) / 8.0 * (1 - kt) + kt * behind;
+    };
+    return own(front, own(back, 0.9));
+  };
+  EXPECT_NEAR(picture.at(31, 31).x, blended(1, 0), 1e-6) << "in the order of the file";
+}
+
 // Both faces of each ball, a ball inside another one, and opaque shapes in front and behind, without shadows.
 TEST(ScanLine, BlendsTransparentBodiesAsWhitted) {
   Json scene = scene_of(
