@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "core/base/task_scope.h"
 #include "core/math/mirror.h"
 #include "core/params/params.h"
 
@@ -43,10 +44,11 @@ RoundingLimit Hall<N>::rounding() const {
 // rays.
 template <class N>
 ReflectionLimits Hall<N>::limits() const {
-  constexpr int kViews = 8, kSteps = 96;
+  constexpr int kViews = 8, kSteps = 48;
   Vec3d most;
   for (const bool inside : {false, true})
     for (int v = 0; v < kViews; ++v) {
+      checkpoint();
       const double z = (v + 0.5) / kViews;
       const Vec3d viewer(std::sqrt(1 - z * z), 0, z);
       const Vec3d mirrored = reflectance_at(z, inside);

@@ -108,7 +108,7 @@ pageTest(
     const { scene, technique, samples } = await hashOf(page);
     assert.deepEqual(
       [scene, technique, samples],
-      ["cornell-box", undefined, "1"],
+      ["atmosphere-depth-cue", undefined, "1"],
       "only the rejected setting is dropped",
     );
   },
