@@ -36,8 +36,7 @@ void EnergyAccount<T>::add(const PathBatch<T>& paths, const HitBatch<T>& hits, c
   sample(paths, hits, surface, draws, met, Lobes::diffuse);
   for_each_hit(paths, hits, surface, met, energy, [&](int lane, EnergySums& sums) {
     ++sums.hits;
-    const bool through = dot(sampled_.direction[lane], surface.geometric[lane]) < 0;
-    (through ? sums.transmitted : sums.diffuse) += share(lane);
+    sums.diffuse += share(lane);
   });
   sample(paths, hits, surface, draws, met, Lobes::non_diffuse);
   for_each_hit(paths, hits, surface, met, energy, [&](int lane, EnergySums& sums) {
