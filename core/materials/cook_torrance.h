@@ -13,6 +13,11 @@ struct CookTorranceInputs;
 
 // Cook-Torrance model ("A Reflectance Model for Computer Graphics", TOG 1982): a diffuse lobe plus facets in
 // V-shaped grooves with Beckmann-distributed slopes. Light reflected between facets is lost, as in the paper.
+//
+// The facet reflection is F D G / (4 N.L N.V), with a density D of normals whose projection on the surface
+// integrates to 1. Microfacet theory gives this factor (Walter et al., "Microfacet Models for Refraction
+// through Rough Surfaces", EGSR 2007, equation 20). The paper has F D G / (pi N.L N.V) with pi times this
+// density, which is 4 times as much: rough metals would reflect more light than they receive.
 template <class N>
 struct CookTorrance {
   Vec3<N> n, k;      // index of refraction and extinction of the facets
