@@ -21,6 +21,11 @@ class ShadowedLight {
   // Evaluates the materials of `groups` and traces shadow rays for lanes that reflect light. Returns the
   // registers with such lanes. Afterwards light.shadow.t_max is positive in lanes whose light is reflected
   // and not occluded. Without Plan::shadows, no light counts as occluded. constant_half: see Directions.
+  //
+  // With SurfaceFields::smooth, a smooth triangle also reflects light that its interpolated normal faces and
+  // its plane does not. The shadow ray of such light starts at the curved surface. Light counts as occluded
+  // if the way from the triangle to this point, or from there to the light, is blocked. Closed bodies
+  // therefore let no light in. MaterialKernel::sample() does not sample such directions, so `pdf` is 0.
   LaneGroups find(const PathBatch<T>& paths, const SurfaceBatch<T>& surface, const LaneGroups& groups,
                   bool constant_half, TraceCounts& counts);
 
@@ -36,10 +41,17 @@ class ShadowedLight {
   // Evaluates the diffuse lobes. Sets `diffuse` and pi_bsdf_cos to 0 in lanes whose density is 0.
   void evaluate_diffuse(const Directions<T>& directions, const SurfaceBatch<T>& surface,
                         const LaneGroups& groups);
+  // Moves the origins of shadow rays that leave below the plane of their triangle to the curved surface, and
+  // points them at the light. Fills `lifts_` and returns its registers.
+  LaneGroups lift(const PathBatch<T>& paths, const SurfaceBatch<T>& surface, const LaneGroups& groups);
+  // Ends the shadow rays whose lift is blocked.
+  void trace_lifts(const LaneGroups& lifted, std::uint64_t& rays, AcceleratorCounts& counts);
+
   const Geometry<T>& geometry_;
   const Accelerator<T>& accelerator_;
   const Plan& plan_;
   bool apart_;
+  RayBatch<T> lifts_;  // from triangles to their curved surfaces; t_max is 0 in other lanes
 };
 
 // Sets pi_bsdf_cos and pdf of the lanes of `groups` for these lobes of their materials. In lanes whose

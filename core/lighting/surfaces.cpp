@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/lighting/lane_masks.h"
 #include "core/lighting/textures.h"
 
 namespace orrery {
@@ -25,6 +26,26 @@ template <class T>
 void find_footprints(const PathBatch<T>& paths, const LaneGroups& groups, const HitBatch<T>& hits,
                      SurfaceBatch<T>& surface) {
   for (const int i : groups) surface.footprint.put(i, paths.width.at(i) + paths.spread.at(i) * hits.t.at(i));
+}
+
+// Light from behind a material that transmits is not an error of its facets, so its lanes keep the geometric
+// normal.
+template <class T>
+void find_smooth(const Geometry<T>& geometry, const PathBatch<T>& paths, const LaneGroups& groups,
+                 const HitBatch<T>& hits, SurfaceBatch<T>& surface) {
+  using N = Lanes<T>;
+  const Vec3<N> none(N(T(0)));
+  for (const int i : groups) {
+    surface.smooth.put(i, surface.geometric.at(i));
+    surface.lift.put(i, none);
+  }
+  for (const auto& shapes : geometry.shapes) shapes->smooth(paths.rays, hits, groups, surface);
+  for (const int i : groups) {
+    const auto transmits = lanes_with(geometry, surface, i, &MaterialTraits::transmits);
+    if (!any(transmits)) continue;
+    surface.smooth.put(i, transmits, surface.geometric.at(i));
+    surface.lift.put(i, transmits, none);
+  }
 }
 
 }  // namespace
@@ -56,6 +77,7 @@ void add_fields(const Geometry<T>& geometry, const SurfaceFields& fields, const 
   if (fields.footprint) find_footprints(paths, met, hits, surface);
   if (fields.travelled)
     for (const int i : met) surface.travelled.put(i, hits.t.at(i));
+  if (fields.smooth) find_smooth(geometry, paths, met, hits, surface);
   if (geometry.textures) geometry.textures->apply(geometry, paths, met, hits, surface);
 }
 

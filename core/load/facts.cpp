@@ -30,11 +30,13 @@ struct Extents {
   bool has_unbounded = false;
   Length magnitude{0}, smallest{kInfinity};
   std::size_t left_out = 0;
+  bool smooth = false;
 
   explicit Extents(const std::vector<std::unique_ptr<ShapeSet>>& sets) {
     int number = 0;
     for (const auto& shapes : sets) {
       left_out += shapes->left_out();
+      smooth |= shapes->traits().smooth;
       for (int i = 0; i < shapes->size(); ++i) add(*shapes, i, number++);
     }
   }
@@ -66,6 +68,7 @@ void add_instances(const Scene& scene, SceneFacts& facts) {
   for (const Model& model : scene.models) {
     of_models.emplace_back(model.shapes);
     facts.left_out += of_models.back().left_out;
+    facts.smooth |= of_models.back().smooth;
   }
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
@@ -148,6 +151,7 @@ SceneFacts gather_facts(const Scene& scene) {
   SceneFacts facts;
   const Extents own(scene.shapes);
   facts.left_out = own.left_out;
+  facts.smooth = own.smooth;
   facts.bounds = own.bounded;
   facts.unbounded = own.has_unbounded;
   if (own.magnitude.value > 0)

@@ -29,8 +29,8 @@ class DiffuseKernel final : public MaterialRecords<Record, T> {
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Record<N>& record) {
       const Vec3<N> normal = surface.normal.at(i), light = directions.light.at(i);
       const N cosine = dot(normal, light);
-      const auto lit = mine && directions.reach.at(i) > zero && cosine > zero &&
-                       dot(surface.geometric.at(i), light) > zero;
+      const auto lit =
+          mine && directions.reach.at(i) > zero && cosine > zero && directions.side_cosine(surface, i) > zero;
       pdf.put(i, mine, select(lit, cosine_pdf(cosine), zero));
       if (any(lit))
         pi_bsdf_cos.put(i, mine, pi_brdf(record, normal, light, -directions.ray.at(i), cosine) * cosine);

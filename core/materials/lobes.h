@@ -85,7 +85,7 @@ class LobeKernel : public MaterialRecords<Record, T> {
       const ShadingFrame<N> frame(surface.normal.at(i), geometric, viewer);
       const Vec3<N> local_viewer = frame.local(viewer), local_light = frame.local(light);
       const auto lit = mine && record.rough() > zero && directions.reach.at(i) > zero &&
-                       on_one_side(local_viewer, local_light, dot(geometric, light));
+                       on_one_side(local_viewer, local_light, directions.side_cosine(surface, i));
       pdf.put(i, mine, zero);
       if (!any(lit)) return;
       const auto inside = surface.side.at(i) < zero;

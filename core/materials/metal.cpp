@@ -75,7 +75,7 @@ class MetalKernel final : public MaterialRecords<Metal, T> {
       const ShadingFrame<N> frame(surface.normal.at(i), geometric, viewer);
       const Vec3<N> local_viewer = frame.local(viewer), local_light = frame.local(light);
       const auto lit = mine && directions.reach.at(i) > zero &&
-                       reflects(metal, local_viewer, local_light, dot(geometric, light));
+                       reflects(metal, local_viewer, local_light, directions.side_cosine(surface, i));
       pdf.put(i, mine, zero);
       if (!any(lit)) return;
       const auto scattered = metal.scattered(local_viewer, local_light);

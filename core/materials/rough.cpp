@@ -72,8 +72,8 @@ class RoughKernel final : public MaterialRecords<Rough, T> {
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Rough<N>& rough) {
       const Vec3<N> normal = surface.normal.at(i), toward = directions.light.at(i);
       const N cosine = dot(normal, toward);
-      auto lit = mine && directions.reach.at(i) > zero && cosine > zero &&
-                 dot(surface.geometric.at(i), toward) > zero;
+      auto lit =
+          mine && directions.reach.at(i) > zero && cosine > zero && directions.side_cosine(surface, i) > zero;
       const auto shines = max_component(rough.specular) > zero;
       if (!with_diffuse(lobes)) lit = lit && shines;
       if (!any(lit)) return pdf.put(i, mine, N(zero));

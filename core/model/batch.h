@@ -152,12 +152,14 @@ struct SurfaceFields {
   bool identity = false;    // instance of hits, object of surfaces
   bool footprint = false;   // width and spread of rays, footprint of surfaces
   bool travelled = false;   // distance of surfaces from the ray origin
+  bool smooth = false;      // smooth normal and lift of surfaces
 
   SurfaceFields& operator|=(const SurfaceFields& other) {
     parameters |= other.parameters;
     identity |= other.identity;
     footprint |= other.footprint;
     travelled |= other.travelled;
+    smooth |= other.smooth;
     return *this;
   }
 };
@@ -199,6 +201,10 @@ struct SurfaceBatch {
   Array<T> footprint;        // pixel width in metres, across the ray
   Array<T> travelled;        // metres from the ray's origin
   Array<IndexOf<T>> object;  // object number in the scene: `objects` first, then `instances`
+  // Smooth triangles with opaque materials: the interpolated vertex normal before bumps, unit, and the vector
+  // from `position` to the curved surface that the vertex normals imply (see ShapeKernel::smooth()), metres.
+  // Other surfaces: `geometric` and 0.
+  Vec3Array<T> smooth, lift;
   // Index of refraction inside the surface, divided by the index outside. Null unless Plan::media: indices of
   // materials are then relative to air, and materials apply their filters. Otherwise the technique does.
   const Array<T>* relative_index = nullptr;

@@ -30,6 +30,15 @@ struct Directions {
   const Vec3Array<T>& light;   // unit, away from the surface
   const Array<T>& reach;       // metres along `light`; lanes with reach <= 0 are skipped
   bool constant_half = false;  // both directions are constant over the batch
+  bool smooth = false;         // SurfaceBatch::smooth may decide which side light comes from
+
+  // Returns values that are positive in lanes whose light comes from the viewer's side of the surface: the
+  // cosine at the geometric normal. With `smooth`, the larger of the cosines at both normals.
+  [[gnu::always_inline]] Lanes<T> side_cosine(const SurfaceBatch<T>& surface, int i) const {
+    const Vec3<Lanes<T>> toward = light.at(i);
+    const Lanes<T> flat = dot(surface.geometric.at(i), toward);
+    return smooth ? max_first(flat, dot(surface.smooth.at(i), toward)) : flat;
+  }
 };
 
 // Selection of a material's lobes. Diffuse lobes reflect over the whole hemisphere on the incident side,

@@ -47,6 +47,7 @@ struct SceneFacts {
   std::size_t left_out = 0;                                          // primitives without area
   Boundsd bounds;                                                    // bounded primitives only
   bool unbounded = false;                                            // some primitive is unbounded
+  bool smooth = false;                                               // some mesh has vertex normals
   RadianceRange tree_radiance, distributed_radiance, path_radiance;  // one per kind of technique
   Vec3d albedo;                                                      // bound on the albedos of used materials
   // The members below, except max_albedo, are inputs to the choice of the number type.

@@ -28,6 +28,13 @@ struct Surface {
   N magnitude;        // largest absolute coordinate near the hit, the scale of rounding errors
 };
 
+// Values of ShapeKernel::smooth() at one hit.
+template <class N>
+struct SmoothSurface {
+  Vec3<N> normal;  // unit, on the viewer's side
+  Vec3<N> lift;    // metres
+};
+
 // Parameters of one hit on its shape.
 template <class N>
 struct SurfacePoint {
@@ -107,6 +114,13 @@ class ShapeKernel {
   // called before.
   virtual void parameters(const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits,
                           SurfaceBatch<T>& out) const = 0;
+
+  // Fills `smooth` and `lift` of hits on triangles with vertex normals. Other lanes are unchanged. For
+  // vertices V with unit normals n toward the viewer and weights b at position P, the lift is the sum of b
+  // max(0, -dot(P - V, n)) n (Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021). REQUIRES:
+  // surface() was called before.
+  virtual void smooth(const RayBatch<T>& /*rays*/, const HitBatch<T>& /*hits*/, const LaneGroups& /*groups*/,
+                      SurfaceBatch<T>& /*out*/) const {}
 };
 
 template <class T>
@@ -117,6 +131,7 @@ struct ShapeTraits {
   bool convex = false;      // convex or flat: the outside cannot shadow or reflect itself
   bool closed = false;      // has an inside
   bool half_space = false;  // unbounded, with an inside and an outside
+  bool smooth = false;      // ShapeKernel::smooth() may set lanes
 };
 
 // Surface formed by the primitives `index` to `last` - 1 of a set, where `index` is its first primitive.

@@ -46,6 +46,7 @@ class Planner {
       decide("time", seconds(plan_.time), "the motion runs from " + seconds(first) + " to " + seconds(last));
     }
     explain_textures();
+    choose_terminator();
     open_shutter();
     choose_filter();
     choose_precision();
@@ -149,6 +150,17 @@ class Planner {
                  (texture.filtered ? "averaged over the pixel" : "not filtered") +
                  (bumps ? colours ? "; values and bumps" : "; bumps" : ""));
     }
+  }
+
+  // Smooth meshes need the normals of their vertices if light sources light an opaque material.
+  void choose_terminator() {
+    const SceneFacts& facts = scene_.facts;
+    const bool lit = any_light_shines(scene_) || (plan_.technique->draws_light && facts.materials.emits) ||
+                     (plan_.technique->draws_light && scene_.environment && scene_.environment->sampled());
+    if (!facts.smooth || !facts.materials.lit || !lit || plan_.technique->rasterizes) return;
+    plan_.fields.smooth = true;
+    decide("shadow terminator", "smooth",
+           "shadow rays below the plane of a smooth triangle start at its curved surface (Hanika 2021)");
   }
 
   void open_shutter() {

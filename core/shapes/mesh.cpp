@@ -73,7 +73,13 @@ class MeshSet final : public ShapeSet {
     }
     return reach;
   }
-  ShapeTraits traits() const override { return {.convex = false, .closed = false}; }
+  ShapeTraits traits() const override {
+    const bool smooth =
+        std::any_of(table_.parts.begin(), table_.parts.end(), [](const auto& part) { return part.smooth; }) ||
+        std::any_of(moving_.begin(), moving_.end(),
+                    [](const auto& part) { return part.second.crease_degrees.has_value(); });
+    return {.convex = false, .closed = false, .smooth = smooth};
+  }
   Shell shell(int index) const override {
     const std::size_t part = part_number(static_cast<std::size_t>(index));
     const TriangleMesh mesh = mesh_of(part);

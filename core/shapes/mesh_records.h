@@ -23,17 +23,31 @@ struct MeshTriangle {
   const Core& core() const { return corners; }
   N distance(const Ray<N>& ray) const { return corners.distance(ray); }
 
-  // Interpolates the vertex normals, or uses the geometric normal if the vertex normals cancel.
   Surface<N> surface(const Ray<N>& ray, const N&) const {
     const Vec3<N> weights = corners.weights(ray);
+    return {corners.mix(weights), normal, shading_normal(weights), magnitude};
+  }
+
+  SmoothSurface<N> smooth(const Ray<N>& ray) const {
+    const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1));
+    const N side = select(dot(normal, ray.direction) > zero, N(-one), one);
+    const Vec3<N> weights = corners.weights(ray), position = corners.mix(weights);
+    const auto above = [&](const Vec3<N>& corner, const Vec3<N>& n) {
+      return n * (side * max_first(zero, N(-(side * dot(position - corner, n)))));
+    };
+    return {shading_normal(weights) * side, above(corners.a, normals.a) * weights.x +
+                                                above(corners.b, normals.b) * weights.y +
+                                                above(corners.c, normals.c) * weights.z};
+  }
+
+ private:
+  // Interpolates the vertex normals, or uses the geometric normal if the vertex normals cancel.
+  Vec3<N> shading_normal(const Vec3<N>& weights) const {
     const Vec3<N> sum = normals.mix(weights);
     const N size = length(sum);
     const auto usable = size > N(ScalarOf<N>(0.001));  // otherwise the vertex normals nearly cancel
     const auto choose = [&](const N& x, const N& flat) { return select(usable, N(x / size), flat); };
-    return {corners.mix(weights),
-            normal,
-            {choose(sum.x, normal.x), choose(sum.y, normal.y), choose(sum.z, normal.z)},
-            magnitude};
+    return {choose(sum.x, normal.x), choose(sum.y, normal.y), choose(sum.z, normal.z)};
   }
 };
 

@@ -158,6 +158,16 @@ class Kernel final : public ShapeKernel<T> {
     });
   }
 
+  void smooth(const RayBatch<T>& rays, const HitBatch<T>& hits, const LaneGroups& groups,
+              SurfaceBatch<T>& out) const override {
+    for_each_hit(hits, groups, [&](int i, const auto& mine, const Mesh<T>& mesh, std::size_t triangle) {
+      const N time = rays.time.at(i);
+      const Corners<N> corners = mesh.corners(triangle, time);
+      put_smooth<T>(mesh.record(triangle, corners, flat_normal(corners), time).smooth(rays.at(i)), i, mine,
+                    out);
+    });
+  }
+
   void parameters(const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits,
                   SurfaceBatch<T>& out) const override {
     for_each_hit(hits, groups, [&](int i, const auto& mine, const Mesh<T>& mesh, std::size_t triangle) {

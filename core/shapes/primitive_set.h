@@ -12,6 +12,7 @@
 //   Boundsd bounds() const;                                        of a Sphere<double>
 //   N distance(const Ray<N>&) const;              the smallest t > 0 of a hit; +infinity or NaN for a miss
 //   Surface<N> surface(const Ray<N>&, const N& t) const;
+//   SmoothSurface<N> smooth(const Ray<N>&) const;   if it has vertex normals: see ShapeKernel::smooth()
 //   SurfacePoint<N> parameters(const Ray<N>&, const Vec3<N>& position) const;   of a position on the shape
 //   void tessellate(const TessellationView&, int primitive, Tessellation&) const;   of a Sphere<double>; in
 //   the .cpp Vec3d anchor() const;                         if it may be unbounded: see
@@ -65,6 +66,13 @@ template <class T>
   out.u.put(i, mine, point.s);
   out.v.put(i, mine, point.t);
   out.tangent.put(i, mine, point.tangent);
+}
+
+template <class T>
+[[gnu::always_inline]] inline void put_smooth(const SmoothSurface<Lanes<T>>& s, int i,
+                                              const MaskOf<Lanes<T>>& mine, SurfaceBatch<T>& out) {
+  out.smooth.put(i, mine, s.normal);
+  out.lift.put(i, mine, s.lift);
 }
 
 // Kernel of one shape type. `Records` is PlainRecords or a class with the same members.
@@ -131,6 +139,20 @@ class PrimitiveKernel final : public ShapeKernel<T> {
       const auto mapping =
           fetch_records<Records::template Mapping, T>(records_.mappings(), id - first_, mine);
       put_parameters<T>(mapping.parameters(rays.at(i), out.position.at(i)), i, mine, hits, out);
+    }
+  }
+
+  void smooth(const RayBatch<T>& rays, const HitBatch<T>& hits, const LaneGroups& groups,
+              SurfaceBatch<T>& out) const override {
+    if constexpr (requires(const Record<N>& shape) { shape.smooth(rays.at(0)); }) {
+      const int last = first_ + static_cast<int>(records_.size());
+      for (const int i : groups) {
+        const IndexLanes<T> id = load_index<T>(hits.primitive, i);
+        const auto mine = mask_cast<N>(id >= first_ && id < last);
+        if (!any(mine)) continue;
+        const auto shape = fetch_records<Record, T>(records_, id - first_, mine);
+        put_smooth<T>(shape.smooth(rays.at(i)), i, mine, out);
+      }
     }
   }
 

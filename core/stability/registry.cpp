@@ -32,7 +32,8 @@ namespace orrery {
   add(rare_feature)           \
   add(halves)                 \
   add(upper_mean)             \
-  add(second_pair)
+  add(second_pair)            \
+  add(terminator)
 // clang-format on
 
 #define ORRERY_DECLARE(name) StabilityRow name##_row();

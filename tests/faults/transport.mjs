@@ -82,4 +82,22 @@ export const transportFaults = [
     target: "test_render",
     tests: ["Accumulation.*"],
   },
+  {
+    fault: 12,
+    about: "shadow rays of smooth triangles start beyond objects in between",
+    file: "core/lighting/shadowed_light.cpp",
+    from: "if (!lifted.empty()) trace_lifts",
+    to: "if (lifted.size() > kBatch) trace_lifts",
+    target: "test_techniques",
+    tests: ["Terminator.LiftsDoNotPassThroughOtherObjects"],
+  },
+  {
+    fault: 12,
+    about: "light below a smooth triangle shares its weight with directions that are never sampled",
+    file: "core/lighting/shadowed_light.cpp",
+    from: "    pdf.put(i, below, zero);\n",
+    to: "",
+    target: "test_techniques",
+    tests: ["Terminator.LightBelowThePlaneHasFullWeightInPaths"],
+  },
 ];
