@@ -38,22 +38,6 @@ struct IntegerOf<stdx::simd<T, Abi>> {
   using type = stdx::rebind_simd_t<IndexOf<T>, stdx::simd<T, Abi>>;
 };
 
-template <class To, class From>
-[[gnu::always_inline]] inline To convert(const From& x) {
-  if constexpr (std::is_arithmetic_v<From>)
-    return static_cast<To>(x);
-  else
-    return stdx::static_simd_cast<To>(x);
-}
-
-template <class N>
-[[gnu::always_inline]] inline MaskOf<N> mask_cast_to(const auto& mask) {
-  if constexpr (std::is_arithmetic_v<N>)
-    return mask;
-  else
-    return mask_cast<N>(mask);
-}
-
 }  // namespace detail
 
 // Returns log2(x). REQUIRES: x is positive and normal. The result for other arguments is an arbitrary finite
@@ -72,7 +56,7 @@ template <class N>
 #pragma GCC unroll 16
   for (int k = Format::kLogTerms - 2; k >= 0; --k) series = series * s2 + T(1) / T(2 * k + 1);
   constexpr T kTwoOverLn2 = T(2.88539008177792681471984936200378427L);
-  return detail::convert<N>(exponent) + s * series * kTwoOverLn2;
+  return convert_to<N>(exponent) + s * series * kTwoOverLn2;
 }
 
 // Returns 2^y, or 0 if y is below the smallest normal exponent. REQUIRES: y is at most the largest exponent,
@@ -92,7 +76,7 @@ template <class N>
   N series = N(T(1));
 #pragma GCC unroll 16
   for (int k = Format::kExpTerms; k >= 1; --k) series = series * z * (T(1) / T(k)) + T(1);
-  const Integer scale = (detail::convert<Integer>(whole) + Integer(Format::kExponentBias))
+  const Integer scale = (convert_to<Integer>(whole) + Integer(Format::kExponentBias))
                         << Format::kMantissaBits;
   return select(y < N(kLowest), N(T(0)), series * std::bit_cast<N>(scale));
 }
@@ -131,10 +115,10 @@ template <class N>
     cosine = T(1) - cosine * x2 * (T(1) / (T(2 * k - 1) * T(2 * k)));
   }
   sine = x * sine;
-  const Integer q = detail::convert<Integer>(quarter) & Integer(3);
-  const auto swapped = detail::mask_cast_to<N>((q & Integer(1)) != Integer(0));
-  const auto sine_negative = detail::mask_cast_to<N>((q & Integer(2)) != Integer(0));
-  const auto cosine_negative = detail::mask_cast_to<N>(((q + Integer(1)) & Integer(2)) != Integer(0));
+  const Integer q = convert_to<Integer>(quarter) & Integer(3);
+  const auto swapped = mask_cast_to<N>((q & Integer(1)) != Integer(0));
+  const auto sine_negative = mask_cast_to<N>((q & Integer(2)) != Integer(0));
+  const auto cosine_negative = mask_cast_to<N>(((q + Integer(1)) & Integer(2)) != Integer(0));
   const N s = select(swapped, cosine, sine), c = select(swapped, sine, cosine);
   return {select(sine_negative, N(-s), s), select(cosine_negative, N(-c), c)};
 }

@@ -103,6 +103,23 @@ template <class To, class T, class Abi>
     return stdx::__proposed::static_simd_cast<typename To::mask_type>(m);
 }
 
+// Conversions between number types of equal width, and of their masks, for scalars and lanes.
+template <class To, class From>
+[[gnu::always_inline]] inline To convert_to(const From& x) {
+  if constexpr (std::is_arithmetic_v<From>)
+    return static_cast<To>(x);
+  else
+    return stdx::static_simd_cast<To>(x);
+}
+
+template <class N>
+[[gnu::always_inline]] inline MaskOf<N> mask_cast_to(const auto& mask) {
+  if constexpr (std::is_arithmetic_v<N>)
+    return mask;
+  else
+    return mask_cast<N>(mask);
+}
+
 template <class T>
 [[gnu::always_inline]] inline Lanes<T> load(const T* from) {
   return Lanes<T>(from, stdx::vector_aligned);

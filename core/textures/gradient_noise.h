@@ -18,7 +18,7 @@ class GradientNoise {
   using T = ScalarOf<N>;
 
   // `seed` selects one of 2^24 patterns.
-  explicit GradientNoise(const N& seed) : seed_(convert<Integer>(seed)) {}
+  explicit GradientNoise(const N& seed) : seed_(convert_to<Integer>(seed)) {}
 
   // Largest absolute value, at cell centres for the least favourable gradients: measured, see the tests.
   static constexpr double kMax = 1.0366;
@@ -45,14 +45,6 @@ class GradientNoise {
   };
   using Integer = typename UnsignedOf<N>::type;
 
-  template <class To, class From>
-  [[gnu::always_inline]] static To convert(const From& x) {
-    if constexpr (std::is_arithmetic_v<From>)
-      return static_cast<To>(x);
-    else
-      return stdx::static_simd_cast<To>(x);
-  }
-
   // One coordinate: the cell modulo 256 and the next one, the distances from both ends, and the blend.
   struct Axis {
     Integer cell[2];
@@ -63,7 +55,7 @@ class GradientNoise {
       using std::floor;
       const N whole = floor(x), t = x - whole;
       const N wrapped = whole - T(256) * floor(whole * T(1.0 / 256));
-      cell[0] = convert<Integer>(wrapped);
+      cell[0] = convert_to<Integer>(wrapped);
       cell[1] = (cell[0] + Integer(1)) & Integer(255);
       from[0] = t;
       from[1] = t - T(1);
@@ -85,19 +77,12 @@ class GradientNoise {
 
   // Returns the product of the gradient, selected by the low 4 bits of `h`, and (x, y, z).
   [[gnu::always_inline]] static N along_gradient(const Integer& h, const N& x, const N& y, const N& z) {
-    const auto bit = [&h](unsigned mask) { return to_mask((h & Integer(mask)) != Integer(0)); };
+    const auto bit = [&h](unsigned mask) { return mask_cast_to<N>((h & Integer(mask)) != Integer(0)); };
     const auto b8 = bit(8), b4 = bit(4);
-    const auto twelve_or_fourteen = to_mask((h & Integer(13)) == Integer(12));
+    const auto twelve_or_fourteen = mask_cast_to<N>((h & Integer(13)) == Integer(12));
     const N u = select(b8, y, x);
     const N v = select(b8, select(twelve_or_fourteen, x, z), select(b4, z, y));
     return select(bit(1), N(-u), u) + select(bit(2), N(-v), v);
-  }
-  template <class M>
-  [[gnu::always_inline]] static MaskOf<N> to_mask(const M& mask) {
-    if constexpr (std::is_arithmetic_v<N>)
-      return mask;
-    else
-      return mask_cast<N>(mask);
   }
 
   Integer seed_;
