@@ -20,6 +20,12 @@ void take_smaller(LocatedValue& extreme, double value, const std::string& where)
   if (value < extreme.value) extreme = {value, where};
 }
 
+// Replaces `strictest` by `limit` if that is stricter. `where` names the light, material or other feature.
+template <class Where>
+void take_stricter(RoundingLimit& strictest, const RoundingLimit& limit, const Where& where) {
+  if (limit.epsilon < strictest.epsilon) strictest = {limit.epsilon, where() + ": " + limit.reason};
+}
+
 // Extents of a list of shape sets, computed in one pass over the primitives.
 struct Extents {
   struct Length {
@@ -94,18 +100,15 @@ void add_instances(const Scene& scene, SceneFacts& facts) {
 }
 
 void add_atmosphere(const Scene& scene, SceneFacts& facts) {
-  if (!scene.atmosphere) return;
-  const RoundingLimit limit = scene.atmosphere->rounding();
-  if (limit.epsilon < facts.rounding.epsilon)
-    facts.rounding = {limit.epsilon, "/atmosphere: " + limit.reason};
+  if (scene.atmosphere)
+    take_stricter(facts.rounding, scene.atmosphere->rounding(), [] { return std::string("/atmosphere"); });
 }
 
 void add_lights(const Scene& scene, SceneFacts& facts) {
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const LightPlace place = scene.lights[i];
-    RoundingLimit limit = scene.light_sets[place.set]->rounding(place.index);
-    if (limit.epsilon < facts.rounding.epsilon)
-      facts.rounding = {limit.epsilon, "/lights/" + std::to_string(i) + ": " + limit.reason};
+    take_stricter(facts.rounding, scene.light_sets[place.set]->rounding(place.index),
+                  [&] { return "/lights/" + std::to_string(i); });
   }
 }
 
@@ -124,23 +127,21 @@ std::vector<std::int32_t> find_first_users(const Scene& scene) {
 void add_materials(const Scene& scene, std::span<const std::int32_t> first_user, SceneFacts& facts) {
   std::size_t first = 0;
   for (const auto& set : scene.materials) {
+    const MaterialTraits traits = set->traits();
     bool used = false;
     for (std::size_t i = 0; i < static_cast<std::size_t>(set->size()); ++i) {
       if (first + i >= first_user.size() || first_user[first + i] < 0) continue;
       used = true;
       facts.materials.emits |= scene.emission[first + i] != Vec3d(0);
+      const auto user = [&] { return pointer_to_object(scene, first_user[first + i]); };
       const double most = set->max_albedo(static_cast<int>(i));
-      if (most > facts.max_albedo.value)
-        facts.max_albedo = {most, pointer_to_object(scene, first_user[first + i])};
-      if (set->traits().mirrors && most > facts.max_followed_albedo.value)
-        facts.max_followed_albedo = {most, pointer_to_object(scene, first_user[first + i])};
-      const RoundingLimit limit = set->rounding(static_cast<int>(i));
-      if (limit.epsilon < facts.rounding.epsilon)
-        facts.rounding = {
-            limit.epsilon,
-            "the material of " + pointer_to_object(scene, first_user[first + i]) + ": " + limit.reason};
+      if (most > facts.max_albedo.value) facts.max_albedo = {most, user()};
+      if (traits.mirrors && most > facts.max_followed_albedo.value)
+        facts.max_followed_albedo = {most, user()};
+      take_stricter(facts.rounding, set->rounding(static_cast<int>(i)),
+                    [&] { return "the material of " + user(); });
     }
-    if (used) facts.materials |= set->traits();
+    if (used) facts.materials |= traits;
     first += static_cast<std::size_t>(set->size());
   }
 }

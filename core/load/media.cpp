@@ -14,10 +14,6 @@ namespace {
 constexpr std::size_t kMaxPairs = 64;
 constexpr std::size_t kMaxTouching = 16;  // per body
 
-bool overlap(const Boundsd& a, const Boundsd& b) {
-  return a.lo.x <= b.hi.x && b.lo.x <= a.hi.x && a.lo.y <= b.hi.y && b.lo.y <= a.hi.y && a.lo.z <= b.hi.z &&
-         b.lo.z <= a.hi.z;
-}
 // Returns whether the boxes have faces in one plane. Half-spaces may touch any box.
 bool may_touch(const Boundsd& a, const Boundsd& b) {
   const auto along = [](double al, double ah, double bl, double bh) {
@@ -25,9 +21,6 @@ bool may_touch(const Boundsd& a, const Boundsd& b) {
   };
   return !a.bounded() || !b.bounded() || along(a.lo.x, a.hi.x, b.lo.x, b.hi.x) ||
          along(a.lo.y, a.hi.y, b.lo.y, b.hi.y) || along(a.lo.z, a.hi.z, b.lo.z, b.hi.z);
-}
-bool contains(const Boundsd& outer, const Boundsd& inner) {
-  return outer.contains(inner.lo) && outer.contains(inner.hi);
 }
 
 class MediaFinder {
@@ -114,7 +107,7 @@ class MediaFinder {
           name(order[i], order[j]);
           return true;
         }
-        if (!overlap(box, found_.bounds[order[j]])) continue;
+        if (!box.overlaps(found_.bounds[order[j]])) continue;
         if (!nested) name(order[i], order[j]);
         nested = true;
         if (may_touch(box, found_.bounds[order[j]])) join(order[i], order[j]);
@@ -130,7 +123,7 @@ class MediaFinder {
       for (const auto& [box, number] : solids_) {
         checkpoint();
         if (left > 0) --left;
-        if (left > 0 && !contains(found_.bounds[i], box)) continue;
+        if (left > 0 && !found_.bounds[i].contains(box)) continue;
         found_.where = pointer_to_object(scene_, found_.primitive_of[i]);
         found_.other = pointer_to_object(scene_, number);
         return true;

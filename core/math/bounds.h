@@ -31,6 +31,12 @@ struct Bounds {
   bool contains(const Vec3<T>& p) const {
     return p.x >= lo.x && p.x <= hi.x && p.y >= lo.y && p.y <= hi.y && p.z >= lo.z && p.z <= hi.z;
   }
+  bool contains(const Bounds& b) const { return contains(b.lo) && contains(b.hi); }
+  // Returns whether the boxes have a common point.
+  bool overlaps(const Bounds& b) const {
+    return lo.x <= b.hi.x && b.lo.x <= hi.x && lo.y <= b.hi.y && b.lo.y <= hi.y && lo.z <= b.hi.z &&
+           b.lo.z <= hi.z;
+  }
   T diagonal() const { return length(hi - lo); }
   // Returns the largest absolute coordinate.
   T magnitude() const { return std::max(max_component(abs(lo)), max_component(abs(hi))); }

@@ -186,11 +186,6 @@ class Surroundings {
   SurfaceBatch<double> met_{};
 };
 
-bool overlap(const Boundsd& a, const Boundsd& b) {
-  return a.lo.x <= b.hi.x && b.lo.x <= a.hi.x && a.lo.y <= b.hi.y && b.lo.y <= a.hi.y && a.lo.z <= b.hi.z &&
-         b.lo.z <= a.hi.z;
-}
-
 // Returns whether at least two primitives have bounds that overlap `bounds`: the primitive that `bounds`
 // belongs to, and another one. Unbounded primitives overlap all bounds. Also returns true if the scene has
 // more than kMaxPrimitives primitives.
@@ -199,7 +194,7 @@ bool holds_others(const Scene& scene, const Plan& plan, const Boundsd& bounds) {
   return any_shapes(scene, plan.time, [&](const ShapesAt& shapes, const Affined& world, const auto*) {
     for (int i = 0; i < shapes->size(); ++i) {
       const Boundsd box = shapes->bounds(i);
-      overlapping += !box.bounded() || overlap(box_around(box, world), bounds);
+      overlapping += !box.bounded() || box_around(box, world).overlaps(bounds);
       if (overlapping > 1 || ++seen > kMaxPrimitives) return true;
     }
     return false;
