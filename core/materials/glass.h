@@ -60,13 +60,8 @@ struct Glass {
     return Vec3<N>(select(alpha > zero, one, zero));
   }
 
-  // Returns the transmittance over `travelled` metres in lanes where the ray arrives from inside, else 1.
-  // `travelled` may be uninitialised if no material filters.
   Vec3<N> body_transmittance(const MaskOf<N>& is_inside, const N& travelled) const {
-    const N zero(ScalarOf<N>(0));
-    const auto filters = is_inside && max_component(-body.log2_filter) > zero;
-    if (!any(filters)) return Vec3<N>(N(ScalarOf<N>(1)));
-    return body.filter(select(filters, travelled, zero));
+    return body.body_transmittance(is_inside, travelled);
   }
 
   // Evaluates the lobes with the generalised half vector V + eta L. eta is the index of refraction on the

@@ -54,12 +54,8 @@ struct Hall {
   Vec3<N> ambient_reflectance(const N&, Lobes lobes) const {
     return with_diffuse(lobes) ? ambient : Vec3<N>(N(ScalarOf<N>(0)));
   }
-  // As Glass::body_transmittance().
   Vec3<N> body_transmittance(const MaskOf<N>& is_inside, const N& travelled) const {
-    const N zero(ScalarOf<N>(0));
-    const auto filters = is_inside && max_component(-body.log2_filter) > zero;
-    if (!any(filters)) return Vec3<N>(N(ScalarOf<N>(1)));
-    return body.filter(select(filters, travelled, zero));
+    return body.body_transmittance(is_inside, travelled);
   }
 
   // Returns the reflectance per channel if Fresnel's equations give `fresnel`: the tinted reflectance along

@@ -57,9 +57,14 @@ struct Refractive {
   }
 
   // Returns the transmittance after `depth` metres inside.
-  Vec3<N> filter(const N& depth) const {
-    return {exp2_flushed(log2_filter.x * depth), exp2_flushed(log2_filter.y * depth),
-            exp2_flushed(log2_filter.z * depth)};
+  Vec3<N> filter(const N& depth) const { return transmittance_of(log2_filter, depth); }
+  // Returns the transmittance over `travelled` metres in lanes where the ray arrives from inside, else 1.
+  // `travelled` may be uninitialised if no material filters.
+  Vec3<N> body_transmittance(const MaskOf<N>& is_inside, const N& travelled) const {
+    const N zero(ScalarOf<N>(0));
+    const auto filters = is_inside && max_component(-log2_filter) > zero;
+    if (!any(filters)) return Vec3<N>(N(ScalarOf<N>(1)));
+    return filter(select(filters, travelled, zero));
   }
 };
 

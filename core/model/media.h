@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/math/bounds.h"
+#include "core/math/elementary.h"
 #include "core/model/batch.h"
 
 namespace orrery {
@@ -19,6 +20,13 @@ struct Medium {
   Vec3d log2_filter;          // log2 of the transmittance per metre
   bool refracts_only = true;  // the surface does nothing but reflect and refract
 };
+
+// Returns the transmittance of `distance` metres of a medium with this Medium::log2_filter.
+template <class N>
+[[gnu::always_inline]] inline Vec3<N> transmittance_of(const Vec3<N>& log2_filter, const N& distance) {
+  return {exp2_flushed(log2_filter.x * distance), exp2_flushed(log2_filter.y * distance),
+          exp2_flushed(log2_filter.z * distance)};
+}
 
 // Surfaces with a medium on one side. A body is one closed shape, a watertight mesh, or the half-space below
 // a plane. Open surfaces have a medium too, but rays that pass them stay in the media that they were in.
