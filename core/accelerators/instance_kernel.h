@@ -101,22 +101,24 @@ class InstanceKernelOf : public ShapeKernel<T> {
     });
   }
 
-  // The curved surface of a model transforms with the model.
+  // The curved surface of a model transforms with the model. A normal of 0 marks lanes without one.
   void smooth(const RayBatch<T>& rays, const HitBatch<T>& hits, const LaneGroups& groups,
               SurfaceBatch<T>& out) const override {
     const std::unique_ptr<ModelVisit<T>> visit(new ModelVisit<T>);
     const std::unique_ptr<SurfaceBatch<T>> found(new SurfaceBatch<T>);
+    const N zero(T(0));
     visit->rays.count = rays.count;
     for_each_hit(hits, groups, [&](int i, const auto& mask, const Instance& placed, const auto& in_model) {
       const auto pose = enter(placed, rays, i, hits.t.at(i), *visit);
       visit->hits.primitive.put(i, in_model);
-      const LaneGroups one = LaneGroups::single(i);
-      for (const auto& shapes : placed.model->shapes) shapes->surface(visit->rays, visit->hits, one, *found);
-      found->smooth.put(i, found->geometric.at(i));
-      found->lift.put(i, Vec3<N>(N(T(0))));
-      for (const auto& shapes : placed.model->shapes) shapes->smooth(visit->rays, visit->hits, one, *found);
-      out.smooth.put(i, mask, normalize(pose.normal(found->smooth.at(i))));
-      out.lift.put(i, mask, pose.vector(found->lift.at(i)));
+      found->smooth.put(i, Vec3<N>(zero));
+      for (const auto& shapes : placed.model->shapes)
+        shapes->smooth(visit->rays, visit->hits, LaneGroups::single(i), *found);
+      const Vec3<N> normal = found->smooth.at(i);
+      const auto curved = mask && max_component(abs(normal)) > zero;
+      if (!any(curved)) return;
+      out.smooth.put(i, curved, normalize(pose.normal(normal)));
+      out.lift.put(i, curved, pose.vector(found->lift.at(i)));
     });
   }
 

@@ -117,8 +117,7 @@ class ShapeKernel {
 
   // Fills `smooth` and `lift` of hits on triangles with vertex normals. Other lanes are unchanged. For
   // vertices V with unit normals n toward the viewer and weights b at position P, the lift is the sum of b
-  // max(0, -dot(P - V, n)) n (Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021). REQUIRES:
-  // surface() was called before.
+  // max(0, -dot(P - V, n)) n (Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021).
   virtual void smooth(const RayBatch<T>& /*rays*/, const HitBatch<T>& /*hits*/, const LaneGroups& /*groups*/,
                       SurfaceBatch<T>& /*out*/) const {}
 };

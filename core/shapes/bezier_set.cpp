@@ -9,10 +9,15 @@
 namespace orrery {
 namespace {
 
-Boundsd box_of(const BezierPatch& patch) {
+// Returns the box of the control points, relative to the origin of the patch.
+Boundsd local_box_of(const BezierPatch& patch) {
   Boundsd box;
-  for (std::size_t i = 0; i < patch.size(); ++i) box.include(patch.origin + patch.point(i));
+  for (std::size_t i = 0; i < patch.size(); ++i) box.include(patch.point(i));
   return box;
+}
+Boundsd box_of(const BezierPatch& patch) {
+  const Boundsd local = local_box_of(patch);
+  return Boundsd::of({patch.origin + local.lo, patch.origin + local.hi});
 }
 
 template <class T>
@@ -63,8 +68,7 @@ enum class Cut { none, u, v };
 
 // Returns half of the largest side of the control points' box.
 double half_size(const BezierPatch& patch) {
-  Boundsd box;
-  for (std::size_t i = 0; i < patch.size(); ++i) box.include(patch.point(i));
+  const Boundsd box = local_box_of(patch);
   return max_component(box.hi - box.lo) / 2;
 }
 
@@ -164,8 +168,7 @@ void add_grid(const BezierPatch& patch, int us, int vs, int primitive, Tessellat
 }  // namespace
 
 BezierPatch centered(BezierPatch patch) {
-  Boundsd box;
-  for (std::size_t i = 0; i < patch.size(); ++i) box.include(patch.point(i));
+  const Boundsd box = local_box_of(patch);
   const Vec3d shift = (box.lo + box.hi) * 0.5;
   double largest = 0;
   for (std::size_t i = 0; i < patch.size(); ++i) largest = std::max(largest, patch.weight(i));

@@ -119,44 +119,42 @@ class PrimitiveKernel final : public ShapeKernel<T> {
 
   [[gnu::flatten]] void surface(const RayBatch<T>& rays, const HitBatch<T>& hits, const LaneGroups& groups,
                                 SurfaceBatch<T>& out) const override {
-    const int last = first_ + static_cast<int>(records_.size());
-    for (const int i : groups) {
-      const IndexLanes<T> id = load_index<T>(hits.primitive, i);
-      const auto mine = mask_cast<N>(id >= first_ && id < last);
-      if (!any(mine)) continue;
-      const auto shape = fetch_records<Record, T>(records_, id - first_, mine);
+    for_each_hit(hits, groups, [&](int i, const auto& mine, const IndexLanes<T>& index) {
+      const auto shape = fetch_records<Record, T>(records_, index, mine);
       put_surface<T>(shape.surface(rays.at(i), hits.t.at(i)), rays.direction.at(i), i, mine, out);
-    }
+    });
   }
 
   void parameters(const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits,
                   SurfaceBatch<T>& out) const override {
-    const int last = first_ + static_cast<int>(records_.size());
-    for (const int i : groups) {
-      const IndexLanes<T> id = load_index<T>(hits.primitive, i);
-      const auto mine = mask_cast<N>(id >= first_ && id < last);
-      if (!any(mine)) continue;
-      const auto mapping =
-          fetch_records<Records::template Mapping, T>(records_.mappings(), id - first_, mine);
+    for_each_hit(hits, groups, [&](int i, const auto& mine, const IndexLanes<T>& index) {
+      const auto mapping = fetch_records<Records::template Mapping, T>(records_.mappings(), index, mine);
       put_parameters<T>(mapping.parameters(rays.at(i), out.position.at(i)), i, mine, hits, out);
-    }
+    });
   }
 
   void smooth(const RayBatch<T>& rays, const HitBatch<T>& hits, const LaneGroups& groups,
               SurfaceBatch<T>& out) const override {
-    if constexpr (requires(const Record<N>& shape) { shape.smooth(rays.at(0)); }) {
-      const int last = first_ + static_cast<int>(records_.size());
-      for (const int i : groups) {
-        const IndexLanes<T> id = load_index<T>(hits.primitive, i);
-        const auto mine = mask_cast<N>(id >= first_ && id < last);
-        if (!any(mine)) continue;
-        const auto shape = fetch_records<Record, T>(records_, id - first_, mine);
+    if constexpr (requires(const Record<N>& shape) { shape.smooth(rays.at(0)); })
+      for_each_hit(hits, groups, [&](int i, const auto& mine, const IndexLanes<T>& index) {
+        const auto shape = fetch_records<Record, T>(records_, index, mine);
         put_smooth<T>(shape.smooth(rays.at(i)), i, mine, out);
-      }
-    }
+      });
   }
 
  private:
+  // Calls visit(register, lanes, index of their records) for each register of `groups` with hits on the set.
+  template <class Visit>
+  [[gnu::always_inline]] void for_each_hit(const HitBatch<T>& hits, const LaneGroups& groups,
+                                           const Visit& visit) const {
+    const int last = first_ + static_cast<int>(records_.size());
+    for (const int i : groups) {
+      const IndexLanes<T> id = load_index<T>(hits.primitive, i);
+      const auto mine = mask_cast<N>(id >= first_ && id < last);
+      if (any(mine)) visit(i, mine, IndexLanes<T>(id - first_));
+    }
+  }
+
   Records records_;
   int first_;
 };
