@@ -24,10 +24,7 @@ class AtmosphereStage {
   // Sets the shares of `groups`. The share is 1 for rays that missed.
   void find(const RayBatch<T>& rays, int depth, const HitBatch<T>& hits, const LaneGroups& groups) {
     geometry_.atmosphere->transmit(plan_.frame, rays, depth, hits, groups, share_);
-    for (const int i : groups) {
-      const auto missed = load_index<T>(hits.primitive, i) == IndexLanes<T>(IndexOf<T>{kNoPrimitive});
-      share_.put(i, mask_cast<N>(missed), N(T(1)));
-    }
+    for (const int i : groups) share_.put(i, missed_lanes(hits, i), N(T(1)));
   }
 
   // Multiplies the throughput of `groups` by the shares, so that rays spawned from the hits are attenuated.

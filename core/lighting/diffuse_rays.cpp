@@ -8,10 +8,7 @@ template <class T>
 LaneGroups DiffuseRays<T>::draw(const PathBatch<T>& paths, const HitBatch<T>& hits, const PathDraws<T>& draws,
                                 const SurfaceBatch<T>& surface, const LaneGroups& met) {
   const N zero(T(0)), one(T(1));
-  for (const int i : met) drawn_.weight.put(i, Vec3<N>(zero));
-  for (const auto& m : geometry_.materials)
-    if (m.traits.lit && m.traits.has(Lobes::diffuse))
-      m.kernel->sample(paths.rays, hits, surface, draws, met, Lobes::diffuse, drawn_);
+  sample_materials(geometry_, paths.rays, hits, surface, draws, met, Lobes::diffuse, drawn_);
   LaneGroups drawn;
   rays_.depth = paths.depth + 1;
   for (const int i : met) {
@@ -41,9 +38,7 @@ void DiffuseRays<T>::add(const PathBatch<T>& paths, const HitBatch<T>& hits, con
   const Vec3<N> nothing(N(T(0))), background(geometry_.background);
   for (const int i : drawn) {
     find_materials(geometry_, hits_, i, surface_);
-    const auto missed =
-        mask_cast<N>(load_index<T>(hits_.primitive, i) == IndexLanes<T>(IndexOf<T>{kNoPrimitive}));
-    found_.put(i, select(missed, background, nothing));
+    found_.put(i, select(missed_lanes(hits_, i), background, nothing));
   }
   light_.add_environment(rays_, hits_, drawn, found_);
   light_.add_emission(rays_, hits_, surface_, drawn, found_);

@@ -1,5 +1,7 @@
 #include "core/lighting/energy_account.h"
 
+#include "core/lighting/shadowed_light.h"
+
 namespace orrery {
 namespace {
 
@@ -16,15 +18,6 @@ void for_each_hit(const PathBatch<T>& paths, const HitBatch<T>& hits, const Surf
 }  // namespace
 
 template <class T>
-void EnergyAccount<T>::sample(const PathBatch<T>& paths, const HitBatch<T>& hits,
-                              const SurfaceBatch<T>& surface, const PathDraws<T>& draws,
-                              const LaneGroups& met, Lobes lobes) {
-  for (const int i : met) sampled_.weight.put(i, Vec3<N>(N(T(0))));
-  for (const auto& m : geometry_.materials)
-    if (m.traits.has(lobes)) m.kernel->sample(paths.rays, hits, surface, draws, met, lobes, sampled_);
-}
-
-template <class T>
 void EnergyAccount<T>::add(const PathBatch<T>& paths, const HitBatch<T>& hits, const SurfaceBatch<T>& surface,
                            const PathDraws<T>& draws, const LaneGroups& met, TraceCounts& counts) {
   std::vector<EnergySums>& energy = counts.energy;
@@ -33,12 +26,12 @@ void EnergyAccount<T>::add(const PathBatch<T>& paths, const HitBatch<T>& hits, c
     const Vec3<T> weight = sampled_.weight[lane];
     return EnergySums::rounded((double(weight.x) + double(weight.y) + double(weight.z)) / 3);
   };
-  sample(paths, hits, surface, draws, met, Lobes::diffuse);
+  sample_materials(geometry_, paths.rays, hits, surface, draws, met, Lobes::diffuse, sampled_);
   for_each_hit(paths, hits, surface, met, energy, [&](int lane, EnergySums& sums) {
     ++sums.hits;
     sums.diffuse += share(lane);
   });
-  sample(paths, hits, surface, draws, met, Lobes::non_diffuse);
+  sample_materials(geometry_, paths.rays, hits, surface, draws, met, Lobes::non_diffuse, sampled_);
   for_each_hit(paths, hits, surface, met, energy, [&](int lane, EnergySums& sums) {
     const bool through = dot(sampled_.direction[lane], surface.geometric[lane]) < 0;
     (through ? sums.transmitted : sums.specular) += share(lane);

@@ -19,11 +19,6 @@ class EnergyAccount {
            const PathDraws<T>& draws, const LaneGroups& met, TraceCounts& counts);
 
  private:
-  using N = Lanes<T>;
-
-  void sample(const PathBatch<T>& paths, const HitBatch<T>& hits, const SurfaceBatch<T>& surface,
-              const PathDraws<T>& draws, const LaneGroups& met, Lobes lobes);
-
   const Geometry<T>& geometry_;
   ScatterBatch<T> sampled_;
 };

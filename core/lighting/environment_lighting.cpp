@@ -1,17 +1,10 @@
 #include "core/lighting/environment_lighting.h"
 
+#include "core/lighting/lane_masks.h"
 #include "core/lighting/light_tree.h"
 #include "core/lighting/power_heuristic.h"
 
 namespace orrery {
-namespace {
-
-template <class T>
-MaskOf<Lanes<T>> missed_lanes(const HitBatch<T>& hits, int i) {
-  return mask_cast<Lanes<T>>(load_index<T>(hits.primitive, i) == IndexLanes<T>(IndexOf<T>{kNoPrimitive}));
-}
-
-}  // namespace
 
 template <class T>
 void EnvironmentLighting<T>::add(const RayBatch<T>& rays, const HitBatch<T>& hits, const LaneGroups& groups,

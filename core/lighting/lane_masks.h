@@ -4,6 +4,21 @@
 
 namespace orrery {
 
+// Returns the lanes of register i whose rays hit nothing, inactive rays included.
+template <class T>
+[[gnu::always_inline]] inline MaskOf<Lanes<T>> missed_lanes(const HitBatch<T>& hits, int i) {
+  return mask_cast<Lanes<T>>(load_index<T>(hits.primitive, i) == IndexLanes<T>(IndexOf<T>{kNoPrimitive}));
+}
+
+// Returns the registers of `groups` with a hit.
+template <class T>
+LaneGroups groups_with_hits(const HitBatch<T>& hits, const LaneGroups& groups) {
+  LaneGroups met;
+  for (const int i : groups)
+    if (!all(missed_lanes(hits, i))) met.add(i);
+  return met;
+}
+
 // Returns the lanes of register i whose material has the trait. REQUIRES: the register's materials are set.
 template <class T>
 MaskOf<Lanes<T>> lanes_with(const Geometry<T>& geometry, const SurfaceBatch<T>& surface, int i,

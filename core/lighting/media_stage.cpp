@@ -3,14 +3,17 @@
 #include <algorithm>
 
 #include "core/base/task_scope.h"
+#include "core/lighting/lane_masks.h"
 #include "core/lighting/surfaces.h"
-#include "core/math/elementary.h"
 
 namespace orrery {
 namespace {
 
-// Unit direction of probes: parallel to no face or axis of usual scenes.
-constexpr double kProbe[] = {0.41713, 0.61291, 0.67104};
+// Returns the unit direction of probes: parallel to no face or axis of usual scenes.
+template <class T>
+Vec3<T> probe_direction() {
+  return safe_normalize(Vec3<T>(Vec3d(0.41713, 0.61291, 0.67104)));
+}
 
 std::size_t number(int i) { return static_cast<std::size_t>(i); }
 
@@ -39,7 +42,7 @@ void MediaProbe<T>::find(const LaneGroups& groups, MediaLists& lists, TraceCount
       seen_[number(lane)].clear();
       inside_[number(lane)].clear();
     }
-  const Vec3<T> direction = safe_normalize(Vec3<T>(Vec3d(kProbe[0], kProbe[1], kProbe[2])));
+  const Vec3<T> direction = probe_direction<T>();
   follow(direction, groups, counts);
   if (has_half_spaces_) follow(-direction, groups, counts);
   for (const int i : groups)
@@ -56,7 +59,7 @@ bool MediaProbe<T>::inside(std::int32_t body, const Vec3<T>& point, T time, Trac
       geometry_.primitives[static_cast<std::size_t>(media_.primitive_of[number(body)])];
   const LaneGroups one = LaneGroups::single(0);
   for (const T sign : {T(1), T(-1)}) {
-    const Vec3<T> direction = safe_normalize(Vec3<T>(Vec3d(kProbe[0], kProbe[1], kProbe[2]))) * sign;
+    const Vec3<T> direction = probe_direction<T>() * sign;
     for (int lane = 0; lane < kWidth<T>; ++lane)
       sent_.set(lane, {point, direction}, lane == 0 ? std::numeric_limits<T>::infinity() : T(-1));
     sent_.time[0] = time;
@@ -82,9 +85,7 @@ void MediaProbe<T>::follow(const Vec3<T>& direction, const LaneGroups& groups, T
     checkpoint();
     reset(sent_, active, hits_);
     accelerator_.closest(sent_, active, hits_, counts.accelerator);
-    LaneGroups met;
-    for (const int i : active)
-      if (any(load_index<T>(hits_.primitive, i) != IndexLanes<T>(IndexOf<T>{kNoPrimitive}))) met.add(i);
+    const LaneGroups met = groups_with_hits(hits_, active);
     for (const auto& shapes : geometry_.shapes) shapes->surface(sent_, hits_, met, surface_);
     record(met);
     active = met;
@@ -165,25 +166,20 @@ LaneGroups MediaStage<T>::pass(PathBatch<T>& paths, const LaneGroups& groups, Hi
     }
     pending = passing;
   }
-  LaneGroups met;
   for (const int i : groups) {
     const auto moved = passed_.at(i) > N(T(0));
-    if (any(moved)) {
-      paths.rays.origin.put(i, moved, origin_.at(i));
-      hits.t.put(i, hits.t.at(i) + passed_.at(i));
-    }
-    if (any(load_index<T>(hits.primitive, i) != IndexLanes<T>(IndexOf<T>{kNoPrimitive}))) met.add(i);
+    if (!any(moved)) continue;
+    paths.rays.origin.put(i, moved, origin_.at(i));
+    hits.t.put(i, hits.t.at(i) + passed_.at(i));
   }
-  return met;
+  return groups_with_hits(hits, groups);
 }
 
 template <class T>
 void MediaStage<T>::attenuate(PathBatch<T>& paths, int lane, const Medium& medium, T distance) const {
   const Vec3<T> rate(medium.log2_filter);
   if (rate == Vec3<T>(T(0))) return;
-  const Vec3<T> left(exp2_flushed(rate.x * distance), exp2_flushed(rate.y * distance),
-                     exp2_flushed(rate.z * distance));
-  paths.throughput.set(lane, paths.throughput[lane] * left);
+  paths.throughput.set(lane, paths.throughput[lane] * transmittance_of(rate, distance));
 }
 
 template <class T>

@@ -66,6 +66,18 @@ void evaluate_materials(const Geometry<T>& geometry, const Directions<T>& direct
       m.kernel->evaluate(directions, surface, groups, lobes, pi_bsdf_cos, pdf);
 }
 
+// Samples a direction of these lobes for the lanes of `groups`. In lanes whose material lacks the lobes, the
+// weight is 0 and the other members are unchanged. REQUIRES: all lanes with a material have a surface.
+template <class T>
+void sample_materials(const Geometry<T>& geometry, const RayBatch<T>& rays, const HitBatch<T>& hits,
+                      const SurfaceBatch<T>& surface, const PathDraws<T>& draws, const LaneGroups& groups,
+                      Lobes lobes, ScatterBatch<T>& out) {
+  if (lobes != Lobes::all)
+    for (const int i : groups) out.weight.put(i, Vec3<Lanes<T>>(Lanes<T>(T(0))));
+  for (const auto& m : geometry.materials)
+    if (m.traits.has(lobes)) m.kernel->sample(rays, hits, surface, draws, groups, lobes, out);
+}
+
 // Sets the radiance of lanes of `groups` to reflected ambient light, if their material is lit and has these
 // lobes.
 template <class T>

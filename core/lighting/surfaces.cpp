@@ -58,8 +58,7 @@ LaneGroups start_surfaces(const Geometry<T>& geometry, const LaneGroups& groups,
   const Vec3<N> background(geometry.background);
   const N zero(T(0));
   for (const int i : groups) {
-    const IndexLanes<T> primitive = load_index<T>(hits.primitive, i);
-    const auto missed = mask_cast<N>(primitive == kNoPrimitive);
+    const auto missed = missed_lanes(hits, i);
     radiance.put(i, select(missed, background, Vec3<N>(zero)));
     if (all(missed)) continue;
     met.add(i);

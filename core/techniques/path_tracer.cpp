@@ -34,14 +34,12 @@ void PathTracer<T>::trace_emission_only(const RayBatch<T>& camera_rays, T share,
   this->accelerator_.closest(camera_rays, all, v.hits, counts.accelerator);
   if (this->atmosphere_) this->atmosphere_->find(camera_rays, 0, v.hits, all);
   for (const int i : all) {
-    const auto missed =
-        mask_cast<N>(load_index<T>(v.hits.primitive, i) == IndexLanes<T>(IndexOf<T>{kNoPrimitive}));
     find_materials(this->geometry_, v.hits, i, v.surface);
     Vec3<N> seen;
     if (!this->geometry_.emission.empty()) seen = emission_at(this->geometry_, v.surface, i);
     if (this->atmosphere_) seen = seen * this->atmosphere_->share(i);
     const Vec3<N> background(this->geometry_.background);
-    out.radiance.put(i, out.radiance.at(i) + select(missed, background, seen) * N(share));
+    out.radiance.put(i, out.radiance.at(i) + select(missed_lanes(v.hits, i), background, seen) * N(share));
   }
   if (sampled_light_.beyond().empty()) return;
   for (const int i : all) v.radiance.put(i, Vec3<N>(N(T(0))));
@@ -160,11 +158,8 @@ MaskOf<Lanes<T>> PathTracer<T>::view_independent_lanes(int i) const {
 template <class T>
 void PathTracer<T>::scatter(const LaneGroups& met) {
   const auto& v = *this->vertices_;
-  if (!with_diffuse(followed_))  // some materials may have no followed lobe
-    for (const int i : met) scatter_.weight.put(i, Vec3<N>(N(T(0))));
-  for (const auto& m : this->geometry_.materials)
-    if (m.traits.has(followed_))
-      m.kernel->sample(v.paths->rays, v.hits, v.surface, this->draws(), met, followed_, scatter_);
+  sample_materials(this->geometry_, v.paths->rays, v.hits, v.surface, this->draws(), met, followed_,
+                   scatter_);
   for (const int i : met) continue_path(i);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/lighting/diffuse_rays.h"
+#include "core/lighting/lane_masks.h"
 #include "core/lighting/sampled_light.h"
 #include "core/model/material.h"
 #include "core/reuse/path_reuse.h"
@@ -50,10 +51,7 @@ class PathTracer : public Wavefront<T> {
   // upper bound on the omitted light is recorded.
   void end(const LaneGroups& met);
 
-  MaskOf<N> surface_lanes(int i) const {
-    const auto primitive = load_index<T>(this->vertices_->hits.primitive, i);
-    return mask_cast<N>(primitive != IndexLanes<T>(IndexOf<T>{kNoPrimitive}));
-  }
+  MaskOf<N> surface_lanes(int i) const { return !missed_lanes(this->vertices_->hits, i); }
   // Returns the weights of the directions sampled at the first vertices, for the paths in register i. The
   // throughput of these paths excludes the weights. REQUIRES: path reuse.
   Vec3<N> first_weights(int i) const;

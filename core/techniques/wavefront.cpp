@@ -2,6 +2,7 @@
 
 #include "core/base/task_scope.h"
 #include "core/lighting/deposit.h"
+#include "core/lighting/lane_masks.h"
 #include "core/lighting/surfaces.h"
 
 namespace orrery {
@@ -11,9 +12,9 @@ Wavefront<T>::Wavefront(const World<T>& world, const Plan& plan)
     : geometry_(*world.geometry),
       accelerator_(*world.accelerator),
       plan_(plan),
-      vertices_(std::make_unique<Vertices>()),
-      energy_(plan_.energy_of.empty() ? nullptr : std::make_unique<EnergyAccount<T>>(geometry_)),
-      atmosphere_(geometry_.atmosphere ? std::make_unique<AtmosphereStage<T>>(geometry_, plan_) : nullptr) {
+      vertices_(std::make_unique<Vertices>()) {
+  if (geometry_.atmosphere) atmosphere_ = std::make_unique<AtmosphereStage<T>>(geometry_, plan_);
+  if (!plan.energy_of.empty()) energy_ = std::make_unique<EnergyAccount<T>>(geometry_);
   if (plan.media) media_ = std::make_unique<MediaStage<T>>(geometry_, accelerator_, plan_);
 }
 
@@ -120,16 +121,12 @@ template <class T>
 void Wavefront<T>::record_channels(const LaneGroups& groups, const LaneGroups& met) {
   const Vertices& v = *vertices_;
   for (const int i : met)
-    counts_->camera_hits += static_cast<std::uint64_t>(
-        stdx::popcount(load_index<T>(v.hits.primitive, i) != IndexLanes<T>(IndexOf<T>{kNoPrimitive})));
+    counts_->camera_hits += static_cast<std::uint64_t>(stdx::popcount(!missed_lanes(v.hits, i)));
   const N zero(T(0)), one(T(1));
   for (std::size_t c = 0; c < plan_.channels.size(); ++c) {
     ChannelBatch<T>& channel = out_->channels[c];
     plan_.channels[c]->record(FirstHits<T>{*v.paths, v.hits, v.surface}, met, channel.value);
-    for (const int i : groups) {
-      const auto hit = load_index<T>(v.hits.primitive, i) != IndexLanes<T>(IndexOf<T>{kNoPrimitive});
-      channel.weight.put(i, select(mask_cast<N>(hit), one, zero));
-    }
+    for (const int i : groups) channel.weight.put(i, select(missed_lanes(v.hits, i), zero, one));
   }
 }
 

@@ -71,7 +71,6 @@ class Wavefront : public Tracer<T> {
   const Accelerator<T>& accelerator_;
   const Plan& plan_;
   std::unique_ptr<Vertices> vertices_;
-  std::unique_ptr<EnergyAccount<T>> energy_;        // null unless the plan keeps the account
   std::unique_ptr<AtmosphereStage<T>> atmosphere_;  // null if the scene has no atmosphere
 
  private:
@@ -86,8 +85,9 @@ class Wavefront : public Tracer<T> {
 
   std::vector<std::unique_ptr<PathBatch<T>>> waiting_, spare_;
   std::unique_ptr<PathBatch<T>> reflected_, refracted_;
-  std::unique_ptr<MediaStage<T>> media_;  // null unless Plan::media
-  Array<T> time_;                         // times of the camera rays; filled only if Plan::shutter > 0
+  std::unique_ptr<EnergyAccount<T>> energy_;  // null unless the plan keeps the account
+  std::unique_ptr<MediaStage<T>> media_;      // null unless Plan::media
+  Array<T> time_;                             // times of the camera rays; filled only if Plan::shutter > 0
   const Draws* draws_ = nullptr;
   TraceResult<T>* out_ = nullptr;
   TraceCounts* counts_ = nullptr;
