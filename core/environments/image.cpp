@@ -1,7 +1,7 @@
 #include "core/environments/light_map.h"
 #include "core/math/angles.h"
+#include "core/model/asset_reader.h"
 #include "core/model/environment.h"
-#include "core/params/params.h"
 
 namespace orrery {
 namespace {
@@ -114,29 +114,8 @@ class ImageEnvironment final : public Environment {
   const std::shared_ptr<const TurnedMap> image_;
 };
 
-TexelsPtr read_picture_of(Params& p, const char* key, const std::string& name, const auto& read) {
-  try {
-    if (name.empty()) throw InputError("", "must be a name (got \"\")");
-    return read(name);
-  } catch (const InputError& error) {
-    p.fail(key, error.problems().front().detail);
-    return nullptr;
-  }
-}
-
 std::shared_ptr<const Environment> read_image(Params& p, const AssetSource& source) {
-  constexpr std::size_t kMostNameLength = 1024;
-  TexelsPtr picture;
-  if (p.form({{"file"}, {"asset"}}) == 0) {
-    const std::string name =
-        p.text("file", "EXR, HDR, PNG or JPEG file in or below the scene's folder; command line only.",
-               kMostNameLength);
-    picture = read_picture_of(p, "file", name, [&](const std::string& n) { return source.picture_file(n); });
-  } else {
-    const std::string name = p.text("asset", "SHA-256 of an uploaded EXR, HDR, PNG or JPEG file.", 64);
-    picture =
-        read_picture_of(p, "asset", name, [&](const std::string& n) { return source.picture_asset(n); });
-  }
+  const TexelsPtr picture = read_picture(p, source);
   const double degrees =
       p.number("rotation_degrees", "Rotation about +y in degrees, anticlockwise as seen from above.",
                {.min = -1e6, .max = 1e6}, 0.0);

@@ -1,13 +1,13 @@
 #include "core/shapes/mesh_reader.h"
 
 #include "core/base/shorten.h"
+#include "core/model/asset_reader.h"
 #include "core/params/motion.h"
 
 namespace orrery {
 namespace {
 
 constexpr MeshLimits kLimits;
-constexpr std::size_t kMostNameLength = 1024;
 
 std::string entries_text(std::size_t count, const char* why, std::size_t got) {
   return "must be a list of " + std::to_string(count) + " entries, " + why + " (got " + std::to_string(got) +
@@ -44,25 +44,17 @@ TriangleMesh read_inline(Params& p) {
   return mesh;
 }
 
-// Returns read(name). Records a problem at `key` and returns an empty mesh if `name` is empty, `read` throws
-// InputError, or a coordinate exceeds kMaxCoordinate.
+// As read_named(). Rejects coordinates above kMaxCoordinate, too.
 template <class Read>
 TriangleMesh read_elsewhere(Params& p, const char* key, const std::string& name, const Read& read) {
-  if (name.empty()) {
-    p.fail(key, "must not be empty");
-    return {};
-  }
-  try {
-    TriangleMesh mesh = read(name);
+  return read_named(p, key, name, [&](const std::string& n) {
+    TriangleMesh mesh = read(n);
     for (const Vec3d& v : mesh.positions)
       if (!(max_component(abs(v)) <= kMaxCoordinate))
         throw InputError("", "coordinates must be at most 1e12 m in magnitude (got " +
                                  number_text(max_component(abs(v))) + ")");
     return mesh;
-  } catch (const InputError& error) {
-    p.fail(key, error.problems().front().detail);
-    return {};
-  }
+  });
 }
 
 std::string file_name(Params& p, const char* fallback = nullptr) {

@@ -8,8 +8,7 @@
 #include "core/base/task_scope.h"
 #include "core/image/srgb.h"
 #include "core/math/elementary.h"
-#include "core/model/asset_source.h"
-#include "core/params/params.h"
+#include "core/model/asset_reader.h"
 
 namespace orrery {
 namespace {
@@ -187,28 +186,8 @@ TexelsPtr as_codes(const TexelsPtr& image) {
   return std::make_shared<const Texels>(std::move(codes));
 }
 
-TexelsPtr read_texels(Params& p, const char* key, const std::string& name, const auto& read) {
-  try {
-    if (name.empty()) throw InputError("", "must be a name (got \"\")");
-    return read(name);
-  } catch (const InputError& error) {
-    p.fail(key, error.problems().front().detail);
-    return nullptr;
-  }
-}
-
 std::shared_ptr<const Texture> read_image_map(Params& p, const AssetSource& source) {
-  constexpr std::size_t kMostNameLength = 1024;
-  TexelsPtr image;
-  if (p.form({{"file"}, {"asset"}}) == 0) {
-    const std::string name =
-        p.text("file", "EXR, HDR, PNG or JPEG file in or below the scene's folder; command line only.",
-               kMostNameLength);
-    image = read_texels(p, "file", name, [&](const std::string& n) { return source.picture_file(n); });
-  } else {
-    const std::string name = p.text("asset", "SHA-256 of an uploaded EXR, HDR, PNG or JPEG file.", 64);
-    image = read_texels(p, "asset", name, [&](const std::string& n) { return source.picture_asset(n); });
-  }
+  const TexelsPtr image = read_picture(p, source);
   const bool is_linear =
       p.choice(
           "encoding",
