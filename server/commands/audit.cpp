@@ -62,24 +62,16 @@ std::string audit_text(const Audit& found, const Plan& plan) {
   return text;
 }
 
-Audit audit_of(const PreparedScene& scene, const AuditOptions& options, const RenderRequest& request,
-               Executor& executor, const RenderControl& control) {
-  try {
-    return audit(scene, request, options.pixels, options.draw, executor, control);
-  } catch (const InputError& error) {
-    throw with_flag_names(error);
-  }
-}
-
 int run_audit(const AuditOptions& options) {
   const RenderRequest request = read_render_flags(options.render);
   const PreparedScene scene(load_scene_file(options.render.scene));
   const SignalWatch signals;
   ThreadExecutor executor(options.threads);
   std::optional<ProgressBar> bar(std::in_place, "pixels");
-  const Audit found = audit_of(
-      scene, options, request, executor,
-      {.stop = signals.interrupted(), .progress = [&](int done, int total) { bar->update(done, total); }});
+  const RenderControl control{.stop = signals.interrupted(),
+                              .progress = [&](int done, int total) { bar->update(done, total); }};
+  const Audit found =
+      with_flag_names([&] { return audit(scene, request, options.pixels, options.draw, executor, control); });
   bar.reset();
   const Plan plan = make_plan(scene.scene(), request);
   std::cout << (options.json ? audit_json(found, plan).dump(2) + "\n" : audit_text(found, plan));

@@ -3,7 +3,7 @@
 
 #include "core/load/scene_file.h"
 #include "core/plan/limits.h"
-#include "core/plan/plan.h"
+#include "core/study/picture.h"
 #include "core/study/study.h"
 #include "server/api/chart_forms.h"
 #include "server/commands/checks.h"
@@ -38,20 +38,6 @@ struct ChartOptions {
   RenderFlags render;
 };
 
-Study study_of(const Scene& scene, const RenderRequest& view, const Study::Extent& extent) {
-  try {
-    return Study(scene, view, extent);
-  } catch (const InputError& error) {
-    throw with_flag_names(error);
-  }
-}
-
-RenderResult render_picture(const PreparedScene& scene, const RenderRequest& request, FilmStorage storage,
-                            Executor& executor, const SignalWatch& signals) {
-  const SettledPlan plan = settle(scene, make_plan(scene.scene(), request), signals.interrupted());
-  return render_frame(scene, plan, storage, executor, {.stop = signals.interrupted()});
-}
-
 // Returns a name such as "2-whitted-5-float-16.png". `place`: rank by cost, from 0.
 std::string picture_name(std::size_t place, const Configuration& c) {
   return std::to_string(place) + "-" + c.technique + "-" + std::to_string(c.max_depth) + "-" +
@@ -65,7 +51,7 @@ void write_pictures(const std::string& folder, const Study& study, const Prepare
   for (std::size_t place = 0; place < front.size(); ++place) {
     const Point& point = study.chart().points[front[place]];
     const RenderResult made =
-        render_picture(scene, study.request_of(point), FilmStorage::srgb8, executor, signals);
+        render_picture(scene, study.request_of(point), FilmStorage::srgb8, executor, signals.interrupted());
     write_file((std::filesystem::path(folder) / picture_name(place, point.configuration)).string(),
                encode_film(made.film, FileFormat::png));
   }
@@ -107,9 +93,10 @@ int chart(ChartOptions options) {
   const SignalWatch signals;
   ThreadExecutor executor(options.threads);
   options.extent.threads = executor.threads();
-  Study study = study_of(scene.scene(), request, options.extent);
+  Study study = with_flag_names([&] { return Study(scene.scene(), request, options.extent); });
   for (int number = 0; number < study.pictures(); ++number) {
-    study.add(render_picture(scene, study.request(number), FilmStorage::linear32, executor, signals));
+    study.add(
+        render_picture(scene, study.request(number), FilmStorage::linear32, executor, signals.interrupted()));
     bar->update(number + 1, study.pictures());
   }
   bar.reset();

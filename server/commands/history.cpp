@@ -5,8 +5,8 @@
 
 #include "core/load/scene_file.h"
 #include "core/model/technique.h"
-#include "core/plan/plan.h"
 #include "core/study/history.h"
+#include "core/study/picture.h"
 #include "server/commands/checks.h"
 #include "server/commands/commands.h"
 #include "server/commands/help_layout.h"
@@ -51,14 +51,6 @@ nlohmann::ordered_json history_json(const History& history) {
           {"samples", history.samples()},   {"space", "display"},       {"steps", std::move(steps)}};
 }
 
-History history_of(const Scene& scene, const RenderRequest& view) {
-  try {
-    return History(scene, view);
-  } catch (const InputError& error) {
-    throw with_flag_names(error);
-  }
-}
-
 void print_steps(const History& history) {
   std::printf("%-12s %-16s %10s %14s %16s\n", "technique", "origin", "CPU ms", "rays", "RMS difference");
   for (const HistoryStep& step : history.steps())
@@ -77,11 +69,10 @@ int run_history(const HistoryOptions& options) {
   const PreparedScene scene(load_scene_file(options.render.scene));
   const SignalWatch signals;
   ThreadExecutor executor(options.threads);
-  History history = history_of(scene.scene(), request);
+  History history = with_flag_names([&] { return History(scene.scene(), request); });
   for (int number = 0; number < history.pictures(); ++number) {
-    const SettledPlan plan =
-        settle(scene, make_plan(scene.scene(), history.request(number)), signals.interrupted());
-    history.add(render_frame(scene, plan, FilmStorage::linear32, executor, {.stop = signals.interrupted()}));
+    history.add(render_picture(scene, history.request(number), FilmStorage::linear32, executor,
+                               signals.interrupted()));
     bar->update(number + 1, history.pictures());
   }
   bar.reset();

@@ -114,16 +114,14 @@ RenderRequest read_render_flags(const RenderFlags& flags) {
 
 RenderRequest read_picture_flags(const RenderFlags& flags, std::optional<FileFormat> format) {
   RenderRequest request = read_render_flags(flags);
-  try {
+  with_flag_names([&] {
     choose_space(request, format.value_or(FileFormat::png));
     if (format) require_layers_kept(request, *format);
-  } catch (const InputError& error) {
-    throw with_flag_names(error);
-  }
+  });
   return request;
 }
 
-InputError with_flag_names(const InputError& error) {
+InputError name_flags(const InputError& error) {
   std::vector<Problem> problems = error.problems();
   for (Problem& problem : problems)
     for (const RenderOption& option : render_options())

@@ -47,6 +47,16 @@ RenderRequest read_render_flags(const RenderFlags& flags);
 // InputError with flag names.
 RenderRequest read_picture_flags(const RenderFlags& flags, std::optional<FileFormat> format);
 // Returns the same problems with flag names instead of pointers to options.
-InputError with_flag_names(const InputError& error);
+InputError name_flags(const InputError& error);
+
+// Returns make(). Throws InputError with flag names.
+template <class Make>
+auto with_flag_names(const Make& make) {
+  try {
+    return make();
+  } catch (const InputError& error) {
+    throw name_flags(error);
+  }
+}
 
 }  // namespace orrery
