@@ -1,7 +1,6 @@
 #include "core/plan/plan.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cassert>
 #include <limits>
@@ -16,6 +15,7 @@
 #include "core/plan/rounding.h"
 #include "core/plan/warnings.h"
 #include "core/techniques/registry.h"
+#include "core/textures/mapping.h"
 
 namespace orrery {
 namespace {
@@ -134,7 +134,6 @@ class Planner {
 
   // Adds a decision for each texture in use.
   void explain_textures() {
-    constexpr std::array kMappings{"uv", "planar", "spherical", "cylindrical", "solid"};
     for (std::size_t i = 0; i < scene_.textures.size(); ++i) {
       bool colours = false, bumps = false;
       for (const TextureUse& use : scene_.texture_uses)
@@ -146,7 +145,7 @@ class Planner {
         continue;
       }
       decide(what, texture.type,
-             std::string(kMappings[static_cast<std::size_t>(texture.mapping.kind)]) + " mapping, " +
+             std::string(name_of(texture.mapping.kind)) + " mapping, " +
                  (texture.filtered ? "averaged over the pixel" : "not filtered") +
                  (bumps ? colours ? "; values and bumps" : "; bumps" : ""));
     }

@@ -56,6 +56,8 @@ Vec3d read_edge(Params& p, const char* key, const char* doc, const Vec3d& fallba
 
 }  // namespace
 
+std::string_view name_of(TextureMapping::Kind kind) { return kKinds[static_cast<std::size_t>(kind)].type; }
+
 TextureMapping read_mapping(Params& p) {
   TextureMapping mapping;
   p.object_if_given("mapping", "Texture coordinates of a surface point; default: uv.", [&](Params& m) {
