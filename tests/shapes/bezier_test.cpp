@@ -3,11 +3,10 @@
 #include <cmath>
 
 #include "core/shapes/bezier_kernel.h"
-#include "tests/support/batches.h"
 #include "tests/support/covers.h"
 #include "tests/support/exhaustive.h"
 #include "tests/support/random.h"
-#include "tests/support/rays.h"
+#include "tests/support/surfaces.h"
 
 // Compares Bezier patches with de Casteljau's algorithm in long double, which shares no code with the
 // renderer.
@@ -85,27 +84,10 @@ struct PatchHit {
 
 template <class T>
 std::vector<PatchHit<T>> patch_hits(const Json& object, const Rays<T>& rays) {
-  const auto scene = load(scene_with(object));
-  const auto batch = std::make_unique<RayBatch<T>>();
-  const auto hits = std::make_unique<HitBatch<T>>();
-  const auto surface = std::make_unique<SurfaceBatch<T>>();
   std::vector<PatchHit<T>> found;
-  for (const auto& shapes : scene->shapes) {
-    if (shapes->size() == 0) continue;
-    const auto kernel = shapes->kernel(T(), 0);
-    for_each_batch<T>(rays, [&](std::span<const Ray<T>> some, std::size_t) {
-      fill_batch(some, std::numeric_limits<T>::infinity(), *batch);
-      const LaneGroups groups = groups_of(*batch);
-      hits->t = batch->t_max;
-      hits->primitive.values.fill(kNoPrimitive);
-      AcceleratorCounts counts;
-      for (int i = 0; i < shapes->size(); ++i) kernel->closest(i, *batch, groups, *hits, counts);
-      kernel->surface(*batch, *hits, groups, *surface);
-      kernel->parameters(*batch, groups, *hits, *surface);
-      for (int i = 0; i < batch->count; ++i)
-        found.push_back({hits->t[i], hits->u[i], hits->v[i], hits->primitive[i] != kNoPrimitive});
-    });
-  }
+  for_each_surface<T>(*load(scene_with(object)), rays, [&](const auto& hits, const auto&, int i) {
+    found.push_back({hits.t[i], hits.u[i], hits.v[i], hits.primitive[i] != kNoPrimitive});
+  });
   return found;
 }
 
@@ -202,7 +184,7 @@ TEST(Bezier, IsExactOnPlanes) {
     ASSERT_EQ(plane.surface(ray, hit).outward(), Vec3d(0, 0, 1));
   }
   EXPECT_TRUE(plane.closest(Ray<double>{{1, 1, 2}, {0, 0, -1}}).met()) << "at a corner";
-  EXPECT_FALSE(plane.closest(Ray<double>{{1 + 1e-14, 0, 2}, {0, 0, -1}}).met()) << "beside an edge";
+  EXPECT_FALSE(plane.closest(Ray<double>{{1 + 1e-14, 0, 2}, {0, 0, -1}}).met()) << "just outside an edge";
   EXPECT_FALSE(plane.closest(Ray<double>{{-3, 0, 1e-14}, {1, 0, 0}}).met()) << "parallel";
 }
 

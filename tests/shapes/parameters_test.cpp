@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
 #include "core/math/hemisphere.h"
-#include "tests/support/batches.h"
 #include "tests/support/exhaustive.h"
 #include "tests/support/shapes.h"
+#include "tests/support/surfaces.h"
 
 // Tests parameters and tangents of every registered shape.
 namespace orrery::test {
@@ -15,29 +15,12 @@ struct SurfaceParameters {
 };
 
 std::vector<SurfaceParameters> parameters_of(const Json& scene_json, const Rays<double>& rays) {
-  const auto scene = load(scene_json);
-  const auto batch = std::make_unique<RayBatch<double>>();
-  const auto hits = std::make_unique<HitBatch<double>>();
-  const auto surface = std::make_unique<SurfaceBatch<double>>();
   std::vector<SurfaceParameters> found;
-  for (const auto& shapes : scene->shapes) {
-    if (shapes->size() == 0) continue;
-    const auto kernel = shapes->kernel(double(), 0);
-    for_each_batch<double>(rays, [&](std::span<const Ray<double>> some, std::size_t) {
-      fill_batch(some, std::numeric_limits<double>::infinity(), *batch);
-      const LaneGroups groups = groups_of(*batch);
-      hits->t = batch->t_max;
-      hits->primitive.values.fill(kNoPrimitive);
-      AcceleratorCounts counts;
-      for (int i = 0; i < shapes->size(); ++i) kernel->closest(i, *batch, groups, *hits, counts);
-      kernel->surface(*batch, *hits, groups, *surface);
-      kernel->parameters(*batch, groups, *hits, *surface);
-      for (int i = 0; i < batch->count; ++i)
-        if (hits->primitive[i] != kNoPrimitive)
-          found.push_back({surface->position[i], surface->geometric[i], surface->tangent[i], hits->u[i],
-                           hits->v[i], surface->u[i], surface->v[i]});
-    });
-  }
+  for_each_surface<double>(*load(scene_json), rays, [&](const auto& hits, const auto& surface, int i) {
+    if (hits.primitive[i] != kNoPrimitive)
+      found.push_back({surface.position[i], surface.geometric[i], surface.tangent[i], hits.u[i], hits.v[i],
+                       surface.u[i], surface.v[i]});
+  });
   return found;
 }
 

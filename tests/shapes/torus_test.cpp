@@ -228,7 +228,8 @@ TEST(Torus, HitsInSpecialPositions) {
     EXPECT_NEAR(distance({1.5 * side, -5, 0}, {0, 1, 0}), 3, 1e-14) << "touches the inner equator later";
     EXPECT_EQ(distance({5, 5 * side, 0.5 + 1e-12}, safe_normalize(Vec3d(-1, -side, 0))), infinity);
     EXPECT_NEAR(distance({5, 0, 0.5 - 1e-12}, {-1, 0, 0}), 3 - std::sqrt(1e-12), 1e-9) << "below the top";
-    EXPECT_EQ(distance({5, 2.5 * side + 1e-14 * side, 0}, {-1, 0, 0}), infinity) << "beside the equator";
+    EXPECT_EQ(distance({5, 2.5 * side + 1e-14 * side, 0}, {-1, 0, 0}), infinity)
+        << "just outside the equator";
   }
 }
 
