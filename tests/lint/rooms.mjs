@@ -25,7 +25,7 @@ export const kLayers = [
   ["core/reuse"],
   ["core/techniques"],
   ["core/plan"],
-  ["core/prepare", "core/load"],
+  ["core/prepare", "core/load", "core/framing"],
   ["core/accuracy"],
   ["core/render"],
   ["core/budget"],
