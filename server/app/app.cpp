@@ -40,10 +40,19 @@ App::App(const Settings& settings, Timer& timer)
 
 void App::read(Body& body, const Caller& caller, RequestTrace& trace, const ReadDocument& work) {
   const std::string bytes = std::move(body.bytes_);
+  read_with(bytes.size(), caller, trace,
+            [&](const AssetSource& assets) { work(parse_document(bytes), assets); });
+}
+
+void App::read_assets(const Caller& caller, RequestTrace& trace, const ReadAssets& work) {
+  read_with(0, caller, trace, work);
+}
+
+void App::read_with(std::size_t bytes, const Caller& caller, RequestTrace& trace, const ReadAssets& work) {
   services_.run(caller, timer_.now(), trace, [&](const std::stop_token& stop) {
     const auto start = Clock::now();
-    const AssetReader reading(assets_, admission_, caller.client, bytes.size(), stop);
-    work(parse_document(bytes), reading);
+    const AssetReader reading(assets_, admission_, caller.client, bytes, stop);
+    work(reading);
     trace.timing.queue += reading.waited_ms();
     trace.timing.load += milliseconds_since(start) - reading.waited_ms();
   });

@@ -55,6 +55,10 @@ class App {
   // errors of parsing and of `work`.
   using ReadDocument = std::function<void(const Document&, const AssetSource&)>;
   void read(Body& body, const Caller& caller, RequestTrace& trace, const ReadDocument& work);
+  // Calls `work` to read assets, under the same rules.
+  using ReadAssets = std::function<void(const AssetSource&)>;
+  void read_assets(const Caller& caller, RequestTrace& trace, const ReadAssets& work);
+  // Stores a body as asset. `sha256`: name that its bytes must have, or "" for any.
   AssetStore::AddResult add_asset(const std::string& sha256, Body& body, const Caller& caller);
 
   // Returns a progressive render, which the caller advances pass by pass. Throws Busy while draining. Throws
@@ -88,6 +92,9 @@ class App {
   void require_open() const { services_.require_open(); }
 
  private:
+  // Calls `work` for a body of `bytes`.
+  void read_with(std::size_t bytes, const Caller& caller, RequestTrace& trace, const ReadAssets& work);
+
   Timer& timer_;
   std::function<std::string_view()> connections_ = [] { return std::string_view("ok"); };
   std::atomic<bool> retires_{false};

@@ -54,11 +54,11 @@ void AssetStore::require_name(const std::string& name) {
 AssetStore::AddResult AssetStore::add(const std::string& sha256, std::string bytes,
                                       const std::string& client) {
   const std::string hash = sha256_hex(bytes);
-  if (hash != sha256)
+  if (!sha256.empty() && hash != sha256)
     throw InputError("", "asset name must be the SHA-256 of the file, " + hash + " (got " + sha256 + ")");
-  if (const auto known = assets_.find(sha256)) {
-    assets_.add(sha256, client, bytes_of(**known), [&] { return *known; });
-    return {*known, true};
+  if (const auto known = assets_.find(hash)) {
+    assets_.add(hash, client, bytes_of(**known), [&] { return *known; });
+    return {hash, *known, true};
   }
   auto asset = std::make_shared<Asset>();
   asset->bytes = std::move(bytes);
@@ -68,14 +68,14 @@ AssetStore::AddResult AssetStore::add(const std::string& sha256, std::string byt
                              ", asset_store_bytes)");
   // Limits texels to a quarter of the store, so that one image does not evict most others.
   asset->content = content_of(asset->bytes, std::min(most / 4, most - least));
-  const auto add = [&] { return assets_.add(sha256, client, bytes_of(*asset), [&] { return asset; }); };
+  const auto add = [&] { return assets_.add(hash, client, bytes_of(*asset), [&] { return asset; }); };
   auto added = add();
   auto* const picture = std::get_if<Asset::Picture>(&asset->content);
   if (!added && picture && picture->texels) {
     picture->texels = nullptr;
     added = add();
   }
-  if (added) return {added->value, added->known};
+  if (added) return {hash, added->value, added->known};
   constexpr double kRetry_s = 30;
   throw LimitExceeded("assets of other clients leave no room for " + grouped(least) + " more bytes (limit " +
                           grouped(most) + ", asset_store_bytes)",

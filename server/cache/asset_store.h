@@ -34,11 +34,13 @@ class AssetStore final : public AssetSource {
   explicit AssetStore(std::size_t max_bytes) : assets_(max_bytes, std::chrono::hours(1)) {}
 
   struct AddResult {
+    std::string id;  // SHA-256 of the bytes
     AssetPtr asset;
     bool known;  // it was already stored
   };
-  // Stores a file for the client. Throws InputError if the bytes have another hash, are neither mesh nor
-  // image, or exceed the limit of the store. Throws LimitExceeded if other clients leave no room.
+  // Stores a file for the client. Throws InputError if the bytes have another hash than `sha256`, unless it
+  // is "", are neither mesh nor image, or exceed the limit of the store. Throws LimitExceeded if other
+  // clients leave no room.
   AddResult add(const std::string& sha256, std::string bytes, const std::string& client);
   // Throws NotFound if the asset is not stored.
   AssetPtr find(const std::string& sha256);

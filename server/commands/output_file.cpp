@@ -6,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 
 #include "core/base/error.h"
 #include "core/load/scene_file.h"
@@ -36,8 +37,8 @@ std::string ending_of(const std::string& path) {
   return ending;
 }
 
-FileFormat format_of(const std::string& path) {
-  const std::string ending = ending_of(path);
+FileFormat format_of(const std::string& path, const std::string& name) {
+  const std::string ending = !name.empty() ? "." + name : path == "-" ? ".png" : ending_of(path);
   if (ending == ".png") return FileFormat::png;
   if (ending == ".jpg" || ending == ".jpeg") return FileFormat::jpeg;
   if (ending == ".exr") return FileFormat::exr;
@@ -47,6 +48,7 @@ FileFormat format_of(const std::string& path) {
 bool is_same_file(const std::string& a, const std::string& b) { return target_of(a) == target_of(b); }
 
 void require_writable(const std::string& path) {
+  if (path == "-") return;
   const std::string folder = std::filesystem::path(target_of(path)).parent_path().string();
   const std::string place = !is_replaced(path) ? path : folder.empty() ? "." : folder;
   std::error_code ignored;
@@ -56,6 +58,11 @@ void require_writable(const std::string& path) {
 }
 
 void write_file(const std::string& path, std::string_view bytes) {
+  if (path == "-") {
+    if (!std::cout.write(bytes.data(), static_cast<std::streamsize>(bytes.size())).flush())
+      throw FileError("cannot write to standard output");
+    return;
+  }
   const bool replace = is_replaced(path);
   const std::string target = target_of(path),
                     written = replace ? target + ".part-" + std::to_string(getpid()) : path;

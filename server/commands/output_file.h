@@ -9,8 +9,9 @@ namespace orrery {
 
 // Returns the extension in lower case: ".png" for "a/b.PNG".
 std::string ending_of(const std::string& path);
-// Returns the format for the extension of a file name. Throws InputError if it is unknown.
-FileFormat format_of(const std::string& path);
+// Returns the format with this name, or if it is empty, the format for the extension of a file name. Standard
+// output ("-") has the format png. Throws InputError if the extension is unknown.
+FileFormat format_of(const std::string& path, const std::string& name = "");
 
 // Whether both paths lead to the same file after symbolic links are resolved.
 bool is_same_file(const std::string& a, const std::string& b);
@@ -19,7 +20,7 @@ bool is_same_file(const std::string& a, const std::string& b);
 void require_writable(const std::string& path);
 
 // Writes a file atomically: writes a temporary file in the same folder and renames it. Writes directly to
-// devices and pipes. Throws FileError.
+// devices and pipes, and to standard output if `path` is "-". Throws FileError.
 void write_file(const std::string& path, std::string_view bytes);
 
 }  // namespace orrery

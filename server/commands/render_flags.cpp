@@ -80,6 +80,13 @@ void add_render_flags(CLI::App& app, RenderFlags& flags, CommonOptions common) {
   add_image_flags(app, flags, common, std::string(kListed));
 }
 
+void add_model_flags(CLI::App& app, RenderFlags& flags) {
+  app.add_option("MODEL", flags.scene, "OBJ, PLY, STL or glTF file, or - for standard input")
+      ->required()
+      ->group("Arguments");
+  add_image_flags(app, flags, kCommonOptions, std::string(kListed));
+}
+
 void add_threads_flag(CLI::App& app, int& threads) {
   add_threads(app, threads, std::string(kListed) + "Speed");
 }

@@ -35,7 +35,10 @@ struct RenderFlags {
   int slice = Plan{}.slice;
 };
 
+// Adds the argument SCENE and the image options.
 void add_render_flags(CLI::App& app, RenderFlags& flags, CommonOptions common = kCommonOptions);
+// The same with the argument MODEL, a mesh file.
+void add_model_flags(CLI::App& app, RenderFlags& flags);
 void add_threads_flag(CLI::App& app, int& threads);
 
 // Returns the text of `orrery help options`.

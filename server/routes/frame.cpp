@@ -1,15 +1,12 @@
-#include "server/app/app.h"
+#include "server/routes/frame.h"
+
 #include "server/rendering/picture_key.h"
-#include "server/routes/answers.h"
 
 // GET /v1/scenes/{id}/frame.png: one image, a pure function of its URL unless the URL sets a time budget.
 namespace orrery {
-namespace {
 
-Response frame(App& app, Request& request) {
-  RequestTrace trace;
-  const RenderOrder order = make_order(app.scenes().find(request.path_value("id")), read_query(request),
-                                       FileFormat::png, caller_of(request));
+Response frame_response(App& app, const Request& request, const RenderOrder& order, RequestTrace& trace,
+                        std::string_view cache_control) {
   const Scene& scene = order.scene->scene();
   const RenderRequest& wanted = order.request;
 
@@ -33,16 +30,19 @@ Response frame(App& app, Request& request) {
   }
   if (!lasts) return response.set("Cache-Control", "no-store");
   response.set("ETag", etag);
-  response.set("Cache-Control", "public, max-age=31536000, immutable");
+  response.set("Cache-Control", std::string(cache_control));
   return response;
 }
-
-}  // namespace
 
 void add_frame_routes(Router& router, App& app) {
   router
       .add("GET", "/v1/scenes/{id}/frame.png", Scope::read, LogLevel::info,
-           [&app](Request& request) { return frame(app, request); })
+           [&app](Request& request) {
+             RequestTrace trace;
+             const RenderOrder order = make_order(app.scenes().find(request.path_value("id")),
+                                                  read_query(request), FileFormat::png, caller_of(request));
+             return frame_response(app, request, order, trace, "public, max-age=31536000, immutable");
+           })
       .describe(
           {.id = "get_frame",
            .summary = "Renders one image, which depends only on its URL unless the URL sets a time budget",

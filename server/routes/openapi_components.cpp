@@ -66,6 +66,7 @@ constexpr std::array kHeaders{
         "Orrery-Scene-Id",
         "Id of the scene: the SHA-256 of its canonical JSON. The scene is cached at /v1/scenes/{id} unless "
         "stored scenes leave too little memory. While it is cached, it can be rendered again by this id"},
+    Header{"Orrery-Asset-Id", "Id of the stored asset: the SHA-256 of its bytes"},
     Header{"Retry-After",
            "Seconds to wait before a retry. For a full queue: queued work divided by the measured throughput",
            R"({"type": "integer"})"},

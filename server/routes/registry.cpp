@@ -6,6 +6,7 @@ namespace orrery {
 // clang-format off
 #define ORRERY_ROUTES(add) \
   add(render)              \
+  add(view)                \
   add(scenes)              \
   add(assets)              \
   add(frame)               \

@@ -14,9 +14,9 @@
 namespace orrery {
 namespace {
 
-constexpr const char* kCommandNames[] = {"render", "orbit",   "check",  "explain", "chart",
-                                         "audit",  "catalog", "schema", "openapi", "stability",
-                                         "serve",  "token",   "help"};
+constexpr const char* kCommandNames[] = {"render",    "view",  "orbit",   "check",  "explain",
+                                         "chart",     "audit", "catalog", "schema", "openapi",
+                                         "stability", "serve", "token",   "help"};
 constexpr const char* kImageCommands[] = {"render", "orbit", "explain", "chart", "audit"};
 
 struct HelpRun {
@@ -76,7 +76,7 @@ TEST(Help, PrintsSameTextForFlagAndHelpCommand) {
 }
 
 TEST(Help, ListsCommonOptionsFirstInFixedOrder) {
-  for (const char* command : {"render", "orbit"}) {
+  for (const char* command : {"render", "view", "orbit"}) {
     const std::string text = run_program(std::string(command) + " --help").text;
     std::size_t before = text.find("Common options:");
     ASSERT_NE(before, std::string::npos) << command;

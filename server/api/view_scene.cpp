@@ -1,0 +1,224 @@
+#include "server/api/view_scene.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/base/number.h"
+#include "core/base/shorten.h"
+#include "core/math/angles.h"
+#include "core/math/bounds.h"
+#include "core/params/params.h"
+
+namespace orrery {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kSize = 512;
+constexpr double kFieldOfView = 30, kMargin = 0.05, kCreaseDegrees = 30, kMaxError = 0.02;
+// Radiance of the surroundings, and intensity and place of the key light relative to the camera.
+constexpr double kSurroundings = 0.75, kKeyLight = 0.9, kKeyAzimuth = -40, kKeyElevation = 50, kKeyWidth = 15;
+constexpr double kModelReflectance = 0.4;
+
+struct NamedDirection {
+  std::string_view name;
+  ViewDirection from;
+};
+// `iso` is the direction of the diagonal of a cube: atan(1 / sqrt(2)) above the horizon.
+constexpr std::array<NamedDirection, 7> kDirections{{{"front", {0, 0}},
+                                                     {"right", {90, 0}},
+                                                     {"back", {180, 0}},
+                                                     {"left", {-90, 0}},
+                                                     {"top", {0, 90}},
+                                                     {"bottom", {0, -90}},
+                                                     {"iso", {45, 35.264389682754654}}}};
+
+std::optional<ViewDirection> parse_direction(std::string_view text) {
+  for (const NamedDirection& named : kDirections)
+    if (text == named.name) return named.from;
+  const std::size_t comma = text.find(',');
+  if (comma == text.npos) return std::nullopt;
+  const auto azimuth = parse_number<double>(std::string(text.substr(0, comma)));
+  const auto elevation = parse_number<double>(std::string(text.substr(comma + 1)));
+  if (!azimuth || !elevation || !(std::abs(*azimuth) <= 360) || !(std::abs(*elevation) <= 90))
+    return std::nullopt;
+  return ViewDirection{*azimuth, *elevation};
+}
+
+constexpr std::array<std::string_view, 7> kAxes{"auto", "x", "-x", "y", "-y", "z", "-z"};
+constexpr std::array<std::string_view, 2> kProjections{"perspective", "orthographic"};
+constexpr std::array<std::string_view, 3> kGrounds{"none", "shadow", "grid"};  // in the order of Ground
+constexpr std::array<std::string_view, 2> kFits{"view", "turn"};               // in the order of Fit
+
+enum Parameter : std::size_t { kFrom, kUp, kProjection, kGround, kFit };
+constexpr std::array<ViewParameter, 5> kParameters{
+    {{"from", "DIRECTION",
+      "Direction from the model to the camera: front, right, back, left, top, bottom, iso, or azimuth and "
+      "elevation in degrees.",
+      "30,20"},
+     {"up", "AXIS", "Axis of the file that is up; auto: z in STL files, y in others.", "auto", kAxes},
+     {"projection", "NAME", "Projection of the camera.", "perspective", kProjections},
+     {"ground", "NAME", "Plane below the model; shadow: it shows nothing but shadows.", "none", kGrounds},
+     {"fit", "NAME", "Content of the image: the model as seen, or the model from every azimuth.", "view",
+      kFits}}};
+
+ViewDirection read_direction(Params& p) {
+  const ViewParameter& row = kParameters[kFrom];
+  const std::string text = p.text(row.key, row.help, 80, row.fallback.data());
+  if (const auto direction = parse_direction(text)) return *direction;
+  p.fail(
+      row.key,
+      "must be front, right, back, left, top, bottom, iso, or azimuth and elevation in degrees, -360 to 360 "
+      "and -90 to 90, such as 30,20 (got \"" +
+          shortened(text, 40) + "\")");
+  return {};
+}
+
+Vec3d axis_of(std::string_view name) {
+  const double sign = name.front() == '-' ? -1 : 1;
+  switch (name.back()) {
+    case 'x': return {sign, 0, 0};
+    case 'y': return {0, sign, 0};
+    default: return {0, 0, sign};
+  }
+}
+
+Json numbers(const Vec3d& v) { return {v.x, v.y, v.z}; }
+
+// Vertices of the triangles.
+std::vector<Vec3d> corners_of(const TriangleMesh& mesh) {
+  std::vector<char> used(mesh.positions.size());
+  for (const auto& triangle : mesh.triangles)
+    for (const std::uint32_t v : triangle) used[v] = 1;
+  std::vector<Vec3d> corners;
+  corners.reserve(mesh.positions.size());
+  for (std::size_t v = 0; v < used.size(); ++v)
+    if (used[v]) corners.push_back(mesh.positions[v]);
+  return corners;
+}
+
+// Returns the reflectance at which unshadowed ground has the radiance of the surroundings.
+double ground_reflectance() {
+  const double lit = kSurroundings + kKeyLight * sine_cosine_degrees(kKeyElevation).sine;
+  return kSurroundings / lit;
+}
+
+// Returns 1, 2 or 5 times a power of 10, about a fifth of `size`.
+double grid_step(double size) {
+  const double power = std::pow(10, std::floor(std::log10(size / 5)));
+  const double steps = size / 5 / power;
+  return power * (steps < 1.5 ? 1 : steps < 3.5 ? 2 : steps < 7.5 ? 5 : 10);
+}
+
+// Adds the plane below the model.
+void add_ground(Json& scene, const ViewOptions& options, const StudioAxes& axes,
+                std::span<const Vec3d> corners) {
+  if (options.ground == ViewOptions::Ground::none) return;
+  const double reflectance = ground_reflectance();
+  Json material{{"type", "lambert"}, {"reflectance", reflectance}};
+  const Vec3d* lowest = &corners.front();
+  Boundsd bounds;
+  for (const Vec3d& corner : corners) {
+    bounds.include(corner);
+    if (dot(corner, axes.up) < dot(*lowest, axes.up)) lowest = &corner;
+  }
+  const Vec3d origin = axes.up * dot(*lowest, axes.up);
+  if (options.ground == ViewOptions::Ground::grid) {
+    const double size = bounds.diagonal() > 0 ? bounds.diagonal() : 1, step = grid_step(size);
+    scene["textures"]["grid"] = {{"type", "checker"},
+                                 {"even", reflectance},
+                                 {"odd", reflectance * 0.85},
+                                 {"mapping",
+                                  {{"type", "planar"},
+                                   {"origin", numbers(origin)},
+                                   {"u_edge", numbers(axes.right * step)},
+                                   {"v_edge", numbers(-axes.front * step)}}}};
+    material["reflectance"] = {{"texture", "grid"}};
+  }
+  scene["materials"]["ground"] = std::move(material);
+  scene["objects"].push_back(
+      {{"type", "plane"}, {"point", numbers(origin)}, {"normal", numbers(axes.up)}, {"material", "ground"}});
+}
+
+Json camera_json(const Framing& framing, bool orthographic) {
+  Json camera{{"type", orthographic ? "orthographic" : "perspective"},
+              {"eye", numbers(framing.eye)},
+              {"look_at", numbers(framing.look_at)},
+              {"up", numbers(framing.up)}};
+  if (orthographic)
+    camera["height"] = framing.height;
+  else
+    camera["fov_degrees"] = kFieldOfView;
+  return camera;
+}
+
+Vec3d key_direction(const StudioAxes& axes, const ViewDirection& from) {
+  const SineCosine turn = sine_cosine_degrees(from.azimuth + kKeyAzimuth);
+  const SineCosine rise = sine_cosine_degrees(kKeyElevation);
+  return (axes.front * turn.cosine + axes.right * turn.sine) * rise.cosine + axes.up * rise.sine;
+}
+
+}  // namespace
+
+Vec3d usual_up(MeshFormat format) { return format == MeshFormat::stl ? Vec3d(0, 0, 1) : Vec3d(0, 1, 0); }
+
+std::span<const ViewParameter> view_parameters() { return kParameters; }
+
+ViewOptions read_view_options(const Document& document) {
+  ViewOptions options;
+  read_document(document, [&](Params& p) {
+    const auto choice = [&](Parameter which) {
+      const ViewParameter& row = kParameters[which];
+      const std::string name = p.choice(row.key, row.help, row.names, row.fallback);
+      return static_cast<std::size_t>(std::find(row.names.begin(), row.names.end(), name) -
+                                      row.names.begin());
+    };
+    options.from = read_direction(p);
+    if (const std::size_t up = choice(kUp); up > 0) options.up = axis_of(kAxes[up]);
+    options.orthographic = choice(kProjection) == 1;
+    options.ground = static_cast<ViewOptions::Ground>(choice(kGround));
+    options.fit = static_cast<Fit>(choice(kFit));
+  });
+  return options;
+}
+
+RenderRequest with_view_budget(RenderRequest request) {
+  if (!request.samples && !request.error && !request.seconds) request.error = kMaxError;
+  return request;
+}
+
+ImageSize view_size(const RenderRequest& request) {
+  return {request.width.value_or(kSize), request.height.value_or(kSize)};
+}
+
+Json view_scene(const TriangleMesh& mesh, MeshFormat format, const ModelReference& model,
+                const ViewOptions& options, int width, int height) {
+  const StudioAxes axes = StudioAxes::with_up(options.up.value_or(usual_up(format)));
+  const std::vector<Vec3d> corners = corners_of(mesh);
+  const Framing framing = frame_points(corners, {.axes = axes,
+                                                 .from = options.from,
+                                                 .aspect = static_cast<double>(width) / height,
+                                                 .fov_degrees = options.orthographic ? 0 : kFieldOfView,
+                                                 .margin = kMargin,
+                                                 .fit = options.fit});
+  Json object{{"type", "mesh"}, {model.key, model.name}, {"material", "model"}};
+  if (mesh.normals.empty()) object["crease_degrees"] = kCreaseDegrees;
+
+  Json scene{{"version", 1}, {"title", shortened(model.title, 200)}};
+  scene["camera"] = camera_json(framing, options.orthographic);
+  scene["image"] = {{"width", width}, {"height", height}};
+  scene["environment"] = {{"type", "constant"}, {"radiance", numbers(Vec3d(kSurroundings))}};
+  scene["materials"]["model"] = {{"type", "lambert"}, {"reflectance", kModelReflectance}};
+  scene["lights"] = {{{"type", "directional"},
+                      {"direction_to_light", numbers(key_direction(axes, options.from))},
+                      {"intensity", numbers(Vec3d(kKeyLight))},
+                      {"angle_degrees", kKeyWidth}}};
+  scene["objects"] = {std::move(object)};
+  add_ground(scene, options, axes, corners);
+  scene["render"] = {{"technique", "path"}, {"max_depth", 4}};
+  return scene;
+}
+
+}  // namespace orrery

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/framing/framing.h"
+#include "core/meshes/mesh_file.h"
+#include "core/params/document.h"
+#include "core/plan/request.h"
+
+namespace orrery {
+
+// Options of the view of a model.
+struct ViewOptions {
+  enum class Ground { none, shadow, grid };
+
+  std::optional<Vec3d> up;  // default: that of the format
+  ViewDirection from = {};
+  bool orthographic = false;
+  Ground ground = Ground::none;
+  Fit fit = Fit::view;
+};
+
+// Option of a view: query parameter and flag.
+struct ViewParameter {
+  std::string_view key, placeholder, help;
+  std::string_view fallback;                     // value of a missing option
+  std::span<const std::string_view> names = {};  // allowed values, unless any text is
+};
+std::span<const ViewParameter> view_parameters();
+
+// Reads the options from an object of strings. Throws InputError with pointers such as "/up".
+ViewOptions read_view_options(const Document& document);
+
+// Returns the request with an error budget of 0.02 if it has neither samples nor a budget.
+RenderRequest with_view_budget(RenderRequest request);
+
+struct ImageSize {
+  int width, height;
+};
+// Returns the size of the image: that of the request, or 512 x 512.
+ImageSize view_size(const RenderRequest& request);
+
+// Direction that is up in files of this format, unless their makers agreed otherwise.
+Vec3d usual_up(MeshFormat format);
+
+// File of a model as a scene refers to it.
+struct ModelReference {
+  const char* key;    // "file" or "asset"
+  std::string name;   // value of the key
+  std::string title;  // title of the scene
+};
+
+// Returns a scene with the model, a camera that frames it exactly in an image of this size, uniform light
+// from all directions and a soft key light from the upper left of the camera. Meshes without normals are
+// smooth across edges of less than 30 degrees. REQUIRES: the mesh has triangles.
+nlohmann::ordered_json view_scene(const TriangleMesh& mesh, MeshFormat format, const ModelReference& model,
+                                  const ViewOptions& options, int width, int height);
+
+}  // namespace orrery

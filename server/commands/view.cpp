@@ -1,0 +1,123 @@
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "core/load/load.h"
+#include "core/load/scene_file.h"
+#include "core/model/asset_source.h"
+#include "core/params/json.h"
+#include "server/api/view_scene.h"
+#include "server/commands/commands.h"
+#include "server/commands/output_file.h"
+#include "server/commands/render_image.h"
+#include "server/config/flag_name.h"
+
+namespace orrery {
+namespace {
+
+constexpr const char* kViewExamples = R"(
+Examples:
+  orrery view part.stl -o part.png
+  orrery view chair.glb -o chair.png --from front --width 1024 --height 1024
+  orrery view part.stl -o - --ground shadow > part.png
+  orrery view part.stl --print-scene -o part.json    # the scene, as JSON
+
+Renders an OBJ, PLY, STL or glTF file without a scene: frames the model exactly,
+lights it evenly and from the upper left. Images have 512 x 512 pixels and an
+RMS error of 0.02, unless options set the size, samples, error or time.
+--print-scene prints the scene instead, which orrery render accepts.
+)";
+
+struct ViewFlags {
+  bool print_scene = false;
+  std::vector<std::string> texts;  // values, in the order of view_parameters()
+  RenderOptions render;
+};
+
+// A model that was already read, under the name of its file.
+class ReadModel final : public AssetSource {
+ public:
+  explicit ReadModel(TriangleMesh mesh) : mesh_(std::move(mesh)) {}
+  TriangleMesh mesh_file(const std::string&) const override { return mesh_; }
+  const TriangleMesh& mesh() const { return mesh_; }
+
+ private:
+  const TriangleMesh mesh_;
+};
+
+struct View {
+  ReadModel model;
+  nlohmann::ordered_json scene;
+};
+
+ViewOptions options_of(const ViewFlags& flags) {
+  nlohmann::json given = nlohmann::json::object();
+  for (std::size_t i = 0; i < flags.texts.size(); ++i)
+    if (!flags.texts[i].empty()) given[std::string(view_parameters()[i].key)] = flags.texts[i];
+  try {
+    return read_view_options(document_of(std::move(given)));
+  } catch (const InputError& error) {
+    std::vector<Problem> problems = error.problems();
+    for (Problem& problem : problems) problem.pointer = flag_of(problem.pointer.substr(1));
+    throw InputError(std::move(problems));
+  }
+}
+
+std::string help_of(const ViewParameter& parameter) {
+  std::string help(parameter.help.substr(0, parameter.help.size() - 1));
+  for (const std::string_view name : parameter.names)
+    help += (name == parameter.names.front() ? ": " : ", ") + std::string(name);
+  return help + " [" + std::string(parameter.fallback) + "]";
+}
+
+View view_of(const ViewFlags& flags, const RenderRequest& request) {
+  const ViewOptions options = options_of(flags);
+  const std::string& path = flags.render.render.scene;
+  const std::string bytes = read_file(path);
+  try {
+    View view{ReadModel(read_mesh(bytes)), {}};
+    const std::string name = path == "-" ? "model" : std::filesystem::path(path).filename().string();
+    const auto [width, height] = view_size(request);
+    view.scene =
+        view_scene(view.model.mesh(), mesh_format(bytes), {"file", name, name}, options, width, height);
+    return view;
+  } catch (const InputError& error) {
+    throw BadScene(path == "-" ? "standard input" : path, error);
+  }
+}
+
+int view(const ViewFlags& flags) {
+  if (flags.print_scene) {
+    const View made = view_of(flags, read_render_flags(flags.render.render));
+    write_file(flags.render.output.value_or("-"), made.scene.dump(2) + "\n");
+    return kDone;
+  }
+  return render_image(flags.render, [&](const RenderRequest& request) {
+    const View made = view_of(flags, request);
+    return load_scene(document_of(made.scene), made.model);
+  });
+}
+
+}  // namespace
+
+Command add_view(CLI::App& root) {
+  const auto flags = std::make_shared<ViewFlags>();
+  CLI::App* app = root.add_subcommand("view", "Render a model without a scene");
+  app->footer(kViewExamples);
+  flags->render.complete = with_view_budget;
+  add_output_flags(*app, flags->render);
+  flags->texts.resize(view_parameters().size());
+  for (std::size_t i = 0; i < flags->texts.size(); ++i) {
+    const ViewParameter& parameter = view_parameters()[i];
+    app->add_option(flag_of(parameter.key), flags->texts[i], help_of(parameter))
+        ->type_name(std::string(parameter.placeholder))
+        ->group(kCommonGroup);
+  }
+  add_model_flags(*app, flags->render.render);
+  app->add_flag("--print-scene", flags->print_scene, "Print the scene as JSON instead of rendering it")
+      ->group("Output");
+  add_threads_flag(*app, flags->render.threads);
+  return {app, [flags] { return view(*flags); }};
+}
+
+}  // namespace orrery

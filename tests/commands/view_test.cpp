@@ -1,0 +1,62 @@
+#include <nlohmann/json.hpp>
+
+#include "tests/commands/command_line.h"
+#include "tests/meshes/writers.h"
+
+// Tests `orrery view`.
+namespace orrery {
+namespace {
+
+class ViewCommand : public CommandLine {
+ protected:
+  std::string model() const { return write("a cube.stl", test::binary_stl_of(test::cube())); }
+  std::string view(const std::string& more) const { return "view '" + model() + "' " + more; }
+};
+
+TEST_F(ViewCommand, RendersModelWithoutScene) {
+  const Outcome to_file = run(view("--width 40 --height 30 --samples 2 -o " + file("a.png")));
+  EXPECT_EQ(to_file.status, 0) << to_file.err;
+  const Outcome to_output = run(view("--width 40 --height 30 --samples 2 -o -"));
+  EXPECT_EQ(to_output.status, 0) << to_output.err;
+  EXPECT_EQ(to_output.out, bytes_of(file("a.png")));
+  EXPECT_EQ(to_output.out.substr(1, 3), "PNG");
+  EXPECT_EQ(run(view("--width 8 --height 8 --samples 1 -o - --format jpeg")).out.substr(0, 3),
+            "\xFF\xD8\xFF");
+  EXPECT_EQ(run("view - --width 40 --height 30 --samples 2 -o - < '" + model() + "'").out, to_output.out);
+}
+
+// The printed scene, rendered in the folder of the model, is the same image.
+TEST_F(ViewCommand, PrintsSceneOfImage) {
+  const std::string options = "--from iso --ground grid --width 40 --height 30 ";
+  const Outcome scene = run(view(options + "--print-scene -o " + file("s.json")));
+  ASSERT_EQ(scene.status, 0) << scene.err;
+  EXPECT_EQ(run("render " + file("s.json") + " --samples 2 -o " + file("a.png")).err, "");
+  EXPECT_EQ(run(view(options + "--samples 2 -o " + file("b.png"))).status, 0);
+  EXPECT_EQ(bytes_of(file("a.png")), bytes_of(file("b.png")));
+  const auto json = nlohmann::json::parse(bytes_of(file("s.json")));
+  EXPECT_EQ(json.at("camera").at("up"), nlohmann::json({0.0, 0.0, 1.0})) << "z is up in STL files";
+  EXPECT_EQ(json.at("title"), "a cube.stl");
+}
+
+TEST_F(ViewCommand, RejectsBadOptions) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"--from up", "--from: must be front, right, back, left, top, bottom, iso, or azimuth and elevation"},
+      {"--from 0,91", "(got \"0,91\")"},
+      {"--from 1,2,3", "(got \"1,2,3\")"},
+      {"--up w", "--up: must be one of"},
+      {"--ground sand", "--ground: must be one of"},
+      {"-o - --stats", "--stats: cannot be used with --output -"},
+      {"-o a.bmp", "--output: must be a name that ends in"}};
+  for (const auto& [option, message] : cases) {
+    const Outcome result = run(view(option));
+    EXPECT_EQ(result.status, 2) << option;
+    EXPECT_NE(result.err.find(message), std::string::npos) << result.err;
+  }
+  EXPECT_EQ(run("view " + file("none.stl")).status, 1);
+  const Outcome broken = run("view " + write("b.stl", "solid\nfacet"));
+  EXPECT_EQ(broken.status, 2);
+  EXPECT_NE(broken.err.find("b.stl: "), std::string::npos) << broken.err;
+}
+
+}  // namespace
+}  // namespace orrery

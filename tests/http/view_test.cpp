@@ -1,0 +1,65 @@
+#include <fstream>
+#include <iterator>
+
+#include "core/base/hash.h"
+#include "tests/http/daemon.h"
+
+namespace orrery {
+namespace {
+
+const std::string kTetrahedron =
+    "v 1 1 1\nv -1 -1 1\nv -1 1 -1\nv 1 -1 -1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+const std::string kSmall = "?width=40&height=30&samples=2";
+
+class View : public HttpTest {
+ protected:
+  httplib::Result post(const std::string& query, const std::string& body = kTetrahedron) {
+    return client_.Post("/v1/view" + query, body, "application/octet-stream");
+  }
+  static std::string path(const std::string& query = kSmall) {
+    return "/v1/assets/" + sha256_hex(kTetrahedron) + "/view.png" + query;
+  }
+};
+
+TEST_F(View, RendersUploadedModel) {
+  const auto posted = post(kSmall);
+  ASSERT_TRUE(posted && posted->status == 200) << posted->body;
+  EXPECT_TRUE(is_png(posted->body));
+  EXPECT_EQ(posted->get_header_value("Orrery-Asset-Id"), sha256_hex(kTetrahedron));
+  const auto by_url = client_.Get(path());
+  ASSERT_TRUE(by_url && by_url->status == 200);
+  EXPECT_EQ(by_url->body, posted->body);
+  EXPECT_NE(client_.Get(path(kSmall + "&from=front"))->body, posted->body);
+  const std::string scene = "/v1/scenes/" + posted->get_header_value("Orrery-Scene-Id");
+  EXPECT_EQ(client_.Get(scene + "/frame.png?samples=2")->body, posted->body) << "the scene has the size";
+}
+
+TEST_F(View, ReturnsNotModifiedForKnownImage) {
+  post(kSmall);
+  const auto first = client_.Get(path());
+  const std::string etag = first->get_header_value("ETag");
+  ASSERT_FALSE(etag.empty());
+  EXPECT_EQ(first->get_header_value("Cache-Control"), "no-cache");
+  EXPECT_EQ(get_known(path(), etag)->status, 304);
+  EXPECT_EQ(get_known(path(kSmall + "&ground=shadow"), etag)->status, 200);
+  EXPECT_EQ(client_.Head(path())->get_header_value("ETag"), etag);
+}
+
+TEST_F(View, RejectsBadRequests) {
+  const auto pointer_of = [&](const httplib::Result& result) {
+    return expect_problem(result, 422).at("errors").at(0).at("pointer").get<std::string>();
+  };
+  EXPECT_EQ(pointer_of(post("?from=sideways")), "/from");
+  EXPECT_EQ(pointer_of(post("?up=w")), "/up");
+  EXPECT_EQ(pointer_of(post("?samples=0")), "/samples");
+  expect_problem(post("?form=front"), 422);
+  expect_problem(post("", "no model"), 422);
+  expect_problem(client_.Get("/v1/assets/" + std::string(64, '0') + "/view.png"), 404);
+  expect_problem(client_.Get("/v1/assets/abc/view.png"), 422);
+  std::ifstream file("scenes/image-sky/sky.hdr", std::ios::binary);
+  const std::string sky((std::istreambuf_iterator<char>(file)), {});
+  expect_problem(post("", sky), 422);
+}
+
+}  // namespace
+}  // namespace orrery
