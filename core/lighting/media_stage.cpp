@@ -120,7 +120,10 @@ MediaStage<T>::MediaStage(const Geometry<T>& geometry, const Accelerator<T>& acc
       accelerator_(accelerator),
       plan_(plan),
       media_(geometry.scene->media),
-      probe_(geometry, accelerator) {}
+      probe_(geometry, accelerator) {
+  walked_.fill(-1);
+  if (plan.scatters) walk_ = std::make_unique<RandomWalk<T>>(geometry, accelerator, plan);
+}
 
 template <class T>
 void MediaStage<T>::start(PathBatch<T>& camera, TraceCounts& counts) {
@@ -140,15 +143,19 @@ void MediaStage<T>::start(PathBatch<T>& camera, TraceCounts& counts) {
 }
 
 template <class T>
-LaneGroups MediaStage<T>::pass(PathBatch<T>& paths, const LaneGroups& groups, HitBatch<T>& hits,
-                               SurfaceBatch<T>& surface, Vec3Array<T>& radiance, TraceCounts& counts) {
+LaneGroups MediaStage<T>::pass(PathBatch<T>& paths, const LaneGroups& groups, const PathDraws<T>& draws,
+                               HitBatch<T>& hits, SurfaceBatch<T>& surface, Vec3Array<T>& radiance,
+                               TraceCounts& counts) {
   surface.relative_index = &relative_index_;
+  surface.behind = &behind_;
+  if (walk_) walk_->start(groups);
   for (const int i : groups) {
     passed_.put(i, N(T(0)));
     for (int lane = i; lane < i + kWidth<T>; ++lane) settled_[number(lane)] = false;
   }
   for (LaneGroups pending = groups; !pending.empty();) {
     checkpoint();
+    if (walk_) walk(paths, pending, draws, hits, surface, radiance, counts);
     LaneGroups passing;
     for (const int i : pending)
       for (int lane = i; lane < i + kWidth<T>; ++lane)
@@ -176,6 +183,32 @@ LaneGroups MediaStage<T>::pass(PathBatch<T>& paths, const LaneGroups& groups, Hi
 }
 
 template <class T>
+void MediaStage<T>::walk(PathBatch<T>& paths, const LaneGroups& groups, const PathDraws<T>& draws,
+                         HitBatch<T>& hits, SurfaceBatch<T>& surface, Vec3Array<T>& radiance,
+                         TraceCounts& counts) {
+  for (const int i : groups)
+    for (int lane = i; lane < i + kWidth<T>; ++lane) {
+      walked_[number(lane)] = -1;
+      if (settled_[number(lane)] || !(paths.rays.t_max[lane] > 0)) continue;
+      const std::int32_t top = (*paths.media)[number(lane)].top(media_.bodies);
+      if (top < 0 || !media_.bodies[number(top)].scatters()) continue;
+      walked_[number(lane)] = top;
+      walk_->add(paths, lane, hits, top);
+    }
+  if (walk_->empty()) return;
+  walk_->run(paths, draws, hits, counts);
+  std::array<bool, kBatchRoom> moved{};  // by the first ray of each register
+  for (const int lane : walk_->moved()) {
+    passed_[lane] = 0;
+    moved[number(lane - lane % kWidth<T>)] = true;
+  }
+  LaneGroups changed;
+  for (const int i : groups)
+    if (moved[number(i)]) changed.add(i);
+  if (!changed.empty()) find_surfaces(geometry_, plan_.fields, paths, changed, hits, surface, radiance);
+}
+
+template <class T>
 void MediaStage<T>::attenuate(PathBatch<T>& paths, int lane, const Medium& medium, T distance) const {
   const Vec3<T> rate(medium.log2_filter);
   if (rate == Vec3<T>(T(0))) return;
@@ -193,7 +226,8 @@ bool MediaStage<T>::cross(PathBatch<T>& paths, int lane, const HitBatch<T>& hits
   const bool leaves = surface.side[lane] < 0, closed = body >= 0 && media_.closed[number(body)] != 0;
   if (leaves && closed) around.enter(body);  // no effect if the ray is known to be inside
   const std::int32_t top = leaves && body >= 0 && !closed ? body : around.top(media_.bodies);
-  if (top >= 0) attenuate(paths, lane, media_.bodies[number(top)], hits.t[lane]);
+  if (top >= 0 && top != walked_[number(lane)])
+    attenuate(paths, lane, media_.bodies[number(top)], hits.t[lane]);
   if (!closed) return false;
   behind = around;
   if (leaves)

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/lighting/random_walk.h"
 #include "core/model/counts.h"
 #include "core/model/path.h"
 #include "core/model/plan.h"
@@ -53,11 +54,20 @@ class MediaStage {
 
   // Moves the rays of `groups` through surfaces between equal media, and through surfaces inside a body of
   // higher priority, to the first other surface. Multiplies throughputs by the transmittance of all media on
-  // the way, and sets SurfaceBatch::relative_index. Rays without a hit keep their throughput. REQUIRES: the
-  // result of find_surfaces() for these rays. Returns the registers with a surface. Densities of rays that
-  // pass surfaces become 0, as for specular directions, because shadow rays do not pass them.
-  LaneGroups pass(PathBatch<T>& paths, const LaneGroups& groups, HitBatch<T>& hits, SurfaceBatch<T>& surface,
-                  Vec3Array<T>& radiance, TraceCounts& counts);
+  // the way, and sets SurfaceBatch::relative_index. Rays without a hit keep their throughput. With
+  // Plan::scatters, rays follow a RandomWalk inside media that scatter. REQUIRES: the result of
+  // find_surfaces() for these rays. Returns the registers with a surface. Densities of rays that pass
+  // surfaces become 0, as for specular directions, because shadow rays do not pass them.
+  LaneGroups pass(PathBatch<T>& paths, const LaneGroups& groups, const PathDraws<T>& draws, HitBatch<T>& hits,
+                  SurfaceBatch<T>& surface, Vec3Array<T>& radiance, TraceCounts& counts);
+
+  // Calls omit(lane, throughput) for the rays that the last call of pass() ended after kMaxScatterings
+  // events.
+  template <class Omit>
+  void for_each_omitted(const Omit& omit) const {
+    if (!walk_) return;
+    for (const auto& [lane, throughput] : walk_->omitted()) omit(lane, throughput);
+  }
 
   // Sets the media of the rays that the last append() to `into` added: those of the parent rays in register i
   // of `paths`, or the media behind their surfaces in the lanes `crosses`. `bits` is the result of append().
@@ -71,6 +81,9 @@ class MediaStage {
     const std::int32_t top = list.top(media_.bodies);
     return top < 0 ? 1 : media_.bodies[static_cast<std::size_t>(top)].ior;
   }
+  // Scatters the rays of `groups` that are not settled and inside media that scatter.
+  void walk(PathBatch<T>& paths, const LaneGroups& groups, const PathDraws<T>& draws, HitBatch<T>& hits,
+            SurfaceBatch<T>& surface, Vec3Array<T>& radiance, TraceCounts& counts);
   // Attenuates the ray in `lane` and sets the media behind its surface. Returns true if the ray enters or
   // leaves a body.
   bool cross(PathBatch<T>& paths, int lane, const HitBatch<T>& hits, const SurfaceBatch<T>& surface);
@@ -91,6 +104,8 @@ class MediaStage {
   Array<T> passed_;      // metres from the ray's origin to the last surface that it passed
   Vec3Array<T> origin_;  // origins of rays with passed_ > 0
   std::array<bool, kBatchRoom> settled_;
+  std::unique_ptr<RandomWalk<T>> walk_;          // null unless Plan::scatters
+  std::array<std::int32_t, kBatchRoom> walked_;  // by ray: body whose walk has weighed the way, or -1
 };
 
 extern template class MediaProbe<float>;

@@ -1,5 +1,6 @@
 #include "core/lighting/shadowed_light.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace orrery {
@@ -67,6 +68,23 @@ void ShadowedLight<T>::trace_lifts(const LaneGroups& lifted, std::uint64_t& rays
   for (const int i : lifted) light.shadow.t_max.put(i, lifts_.t_max.at(i) < N(T(0)), N(T(-1)));
 }
 
+template <class T>
+void ShadowedLight<T>::attenuate(const PathBatch<T>& paths, const SurfaceBatch<T>& surface,
+                                 const LaneGroups& groups) {
+  const std::vector<Medium>& bodies = geometry_.scene->media.bodies;
+  for (const int i : groups)
+    for (int lane = i; lane < i + kWidth<T>; ++lane) {
+      if (!(light.shadow.t_max[lane] > 0)) continue;
+      const bool crosses = dot(light.shadow.direction[lane], surface.geometric[lane]) < 0;
+      const MediaLists& lists = crosses ? *surface.behind : *paths.media;
+      const std::int32_t top = lists[static_cast<std::size_t>(lane)].top(bodies);
+      if (top < 0 || bodies[static_cast<std::size_t>(top)].log2_filter == Vec3d(0)) continue;
+      const Vec3<T> rate(bodies[static_cast<std::size_t>(top)].log2_filter);
+      const T distance = std::min(light.shadow.t_max[lane], std::numeric_limits<T>::max());  // 0 * inf is NaN
+      light.incident.set(lane, light.incident[lane] * transmittance_of(rate, distance));
+    }
+}
+
 // Shadow rays start on the side of the surface that faces the light.
 template <class T>
 LaneGroups ShadowedLight<T>::find(const PathBatch<T>& paths, const SurfaceBatch<T>& surface,
@@ -96,6 +114,7 @@ LaneGroups ShadowedLight<T>::find(const PathBatch<T>& paths, const SurfaceBatch<
     rays += active_rays(shadow, reached);
     accelerator_.occlude(shadow, reached, counts.accelerator);
   }
+  if (surface.behind) attenuate(paths, surface, reached);
   if (geometry_.atmosphere) geometry_.atmosphere->transmit_light(shadow.t_max, reached, light.incident);
   return reached;
 }

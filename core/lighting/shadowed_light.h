@@ -19,8 +19,9 @@ class ShadowedLight {
       : geometry_(geometry), accelerator_(accelerator), plan_(plan), apart_(apart) {}
 
   // Evaluates the materials of `groups` and traces shadow rays for lanes that reflect light. Returns the
-  // registers with such lanes. Afterwards light.shadow.t_max is positive in lanes whose light is reflected
-  // and not occluded. Without Plan::shadows, no light counts as occluded. constant_half: see Directions.
+  // registers with such lanes. With Plan::media, light.incident is attenuated inside bodies. Afterwards
+  // light.shadow.t_max is positive in lanes whose light is reflected and not occluded. Without Plan::shadows,
+  // no light counts as occluded. constant_half: see Directions.
   //
   // With SurfaceFields::smooth, a smooth triangle also reflects light that its interpolated normal faces and
   // its plane does not. The shadow ray of such light starts at the curved surface. Light counts as occluded
@@ -44,6 +45,9 @@ class ShadowedLight {
   // Moves the origins of shadow rays that leave below the plane of their triangle to the curved surface, and
   // points them at the light. Fills `lifts_` and returns its registers.
   LaneGroups lift(const PathBatch<T>& paths, const SurfaceBatch<T>& surface, const LaneGroups& groups);
+  // Attenuates the light of shadow rays by the medium that they start in. They do not leave it, because they
+  // pass no surfaces.
+  void attenuate(const PathBatch<T>& paths, const SurfaceBatch<T>& surface, const LaneGroups& groups);
   // Ends the shadow rays whose lift is blocked.
   void trace_lifts(const LaneGroups& lifted, std::uint64_t& rays, AcceleratorCounts& counts);
 

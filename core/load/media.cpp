@@ -77,6 +77,8 @@ class MediaFinder {
     if (instance && box.bounded())
       box = instance->motion.times.size() > 1 ? Boundsd::everything()
                                               : box_around(box, instance->world_from_model(0));
+    if (shell.closed && medium.scatters() && found_.scattering.empty())
+      found_.scattering = pointer_to_object(scene_, number_ + first);
     found_.bodies.push_back(medium);
     found_.closed.push_back(shell.closed);
     found_.bounds.push_back(box);
@@ -113,7 +115,7 @@ class MediaFinder {
         if (may_touch(box, found_.bounds[order[j]])) join(order[i], order[j]);
       }
     }
-    return nested || absorbs_around_solid();
+    return nested || absorbs_around_solid() || found_.scatters();
   }
   // Returns whether an opaque primitive may be inside a body that absorbs light.
   bool absorbs_around_solid() {

@@ -170,6 +170,7 @@ struct GlassInputs {
   N through_outside, through_inside;
 
   void read(MaterialParams& p);
+  void read_boundary(MaterialParams& p);  // reads ior, roughness and priority
   void tabulate(double roughness);
   Glass<N> record() const {
     const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1));

@@ -22,7 +22,13 @@ struct Refractive {
   }
   ReflectionLimits limits() const { return {Vec3d(0), Vec3d(0), Vec3d(1), true}; }
   double mirrored_share() const { return f0; }
-  Medium medium() const { return {ior, priority, log2_filter, true}; }
+  Medium medium() const {
+    Medium inside;
+    inside.ior = ior;
+    inside.priority = priority;
+    inside.log2_filter = log2_filter;
+    return inside;
+  }
 
   // Returns the material with the media on both sides of the surfaces in register i, without the filter that
   // the technique then applies: see SurfaceBatch::relative_index.

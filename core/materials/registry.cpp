@@ -19,7 +19,8 @@ namespace orrery {
   add(cook_torrance)          \
   add(translucent)            \
   add(transparent)            \
-  add(hall)
+  add(hall)                   \
+  add(subsurface)
 // clang-format on
 
 #define ORRERY_DECLARE(name) MaterialType name##_type();

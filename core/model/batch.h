@@ -12,8 +12,11 @@
 // therefore read and write past `count`, up to the next register boundary.
 namespace orrery {
 
-inline constexpr int kBatch = 1024;             // maximum rays per batch
-inline constexpr int kBatchRoom = kBatch + 16;  // the widest register has 16 lanes
+class MediaList;
+
+inline constexpr int kBatch = 1024;                    // maximum rays per batch
+inline constexpr int kBatchRoom = kBatch + 16;         // the widest register has 16 lanes
+using MediaLists = std::array<MediaList, kBatchRoom>;  // by ray of a batch: see core/model/media.h
 
 template <class T>
 struct Array {
@@ -208,6 +211,8 @@ struct SurfaceBatch {
   // Index of refraction inside the surface, divided by the index outside. Null unless Plan::media: indices of
   // materials are then relative to air, and materials apply their filters. Otherwise the technique does.
   const Array<T>* relative_index = nullptr;
+  // Bodies that contain the points just behind the surfaces. Null unless Plan::media.
+  const MediaLists* behind = nullptr;
   // Values of textured parameters, by slot of TextureUse. Filled only in lanes whose material has such a
   // parameter. Empty if the scene uses no textures.
   std::vector<Vec3Array<T>> textured;

@@ -63,6 +63,7 @@ struct TraceCounts {
   AcceleratorCounts accelerator;
   std::uint64_t camera_hits = 0;   // camera rays that hit something
   std::uint64_t cut_rays = 0;      // rays not traced because of depth, throughput or technique
+  std::uint64_t scatterings = 0;   // scattering events inside media
   std::vector<EnergySums> energy;  // by material; empty unless Plan::energy_of is set
 
   void add(const TraceCounts& other) {
@@ -70,6 +71,7 @@ struct TraceCounts {
     accelerator.add(other.accelerator);
     camera_hits += other.camera_hits;
     cut_rays += other.cut_rays;
+    scatterings += other.scatterings;
     if (energy.size() < other.energy.size()) energy.resize(other.energy.size());
     for (std::size_t i = 0; i < other.energy.size(); ++i) energy[i].add(other.energy[i]);
   }

@@ -21,6 +21,10 @@ enum class SampleSet : std::uint32_t {
 };
 inline constexpr std::uint32_t kSampleSets = 8;  // number of sets before `environment`
 
+// Purpose of a pair of random numbers of one scattering event inside a medium.
+enum class EventSet : std::uint32_t { distance, direction, survival };
+inline constexpr std::uint32_t kFirstEvent = 1u << 31;  // exceeds the sequence numbers of all SampleSets
+
 // Random numbers of one sample of a tile. The numbers are pure functions of (seed, frame, x, y, sample, set,
 // depth). They do not depend on tile order, threads or SIMD width.
 class Draws {
@@ -40,6 +44,20 @@ class Draws {
   [[gnu::always_inline]] SamplePoint<Lanes<T>> two(SampleSet set, int depth,
                                                    const IndexLanes<T>& slot) const {
     const auto point = stratified_point(sample_, stream<T>(set, depth, slot));
+    return {stdx::static_simd_cast<Lanes<T>>(point.u), stdx::static_simd_cast<Lanes<T>>(point.v)};
+  }
+
+  // Returns two numbers for event `event` on the way to the vertex at `depth`, for the path of each slot.
+  // REQUIRES: 0 <= event < 2^20 and depth < 2^8.
+  template <class T>
+  [[gnu::always_inline]] SamplePoint<Lanes<T>> two(EventSet set, int depth, const IndexLanes<T>& slot,
+                                                   const IndexLanes<T>& event) const {
+    const std::uint32_t place =
+        kFirstEvent + 4 * static_cast<std::uint32_t>(depth) + static_cast<std::uint32_t>(set);
+    const Bits<T> number = place + (stdx::static_simd_cast<Bits<T>>(event) << 10);
+    const Bits<T> pixel = combine_bits(seed_, pixel_of(stdx::static_simd_cast<Bits<T>>(slot)));
+    const Bits<T> stream = mix_bits<Bits<T>>(combine_bits<Bits<T>>(frame_, number) ^ pixel);
+    const auto point = stratified_point(sample_, stream);
     return {stdx::static_simd_cast<Lanes<T>>(point.u), stdx::static_simd_cast<Lanes<T>>(point.v)};
   }
 

@@ -19,6 +19,10 @@ struct Medium {
   double priority = 0;        // a body displaces overlapping bodies of lower priority
   Vec3d log2_filter;          // log2 of the transmittance per metre
   bool refracts_only = true;  // the surface does nothing but reflect and refract
+  Vec3d albedo;               // scattered fraction of the light that the medium takes from a ray
+  double anisotropy = 0;      // mean cosine of the angle of scattering (Henyey-Greenstein)
+
+  bool scatters() const { return albedo != Vec3d(0); }
 };
 
 // Returns the transmittance of `distance` metres of a medium with this Medium::log2_filter.
@@ -38,10 +42,19 @@ struct Media {
   std::vector<std::int32_t> primitive_of;  // by body: its first primitive
   // By body: other bodies that may have a face in the same place. Both are single shapes outside instances.
   std::vector<std::vector<std::int32_t>> touching;
-  std::string where, other;  // first two objects whose bounds overlap
+  // First two objects whose bounds overlap. Both empty if media are followed only because bodies scatter.
+  std::string where, other;
+  std::string scattering;  // first object with a closed body that scatters light, or empty
 
   // Returns whether rays must know the bodies that they are inside of.
   bool nested() const { return !bodies.empty(); }
+  bool scatters() const { return !scattering.empty(); }
+  // Returns whether rays outside all bodies may pass into one without reflection or refraction.
+  bool like_air() const {
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      if (closed[i] != 0 && bodies[i].refracts_only && bodies[i].ior == 1) return true;
+    return false;
+  }
 };
 
 // Bodies that contain a point, in the order in which they were entered. The medium at the point is that of
@@ -82,6 +95,7 @@ class MediaList {
   std::array<std::int32_t, kMax> bodies_;
 };
 
-using MediaLists = std::array<MediaList, kBatchRoom>;  // by ray of a batch
+// Largest number of scattering events between two surfaces of a path. Light of longer walks is omitted.
+inline constexpr int kMaxScatterings = 4096;
 
 }  // namespace orrery

@@ -66,6 +66,8 @@ struct Plan {
   bool filters = true;        // materials absorb light inside objects
   bool media = false;         // rays know the bodies that they are inside of
   bool eye_in_media = false;  // camera rays may start inside bodies
+  bool eye_passes = false;    // camera rays may pass surfaces: see MediaStage::pass()
+  bool scatters = false;      // light is scattered inside bodies
   bool lens = false;          // camera rays start on a lens
   // Names of the materials if the energy account is kept, else empty.
   std::vector<std::string> energy_of;

@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kChosenSamples = 16;      // samples per pixel assumed if a budget may end the render early
 constexpr double kSpecularShare = 0.5;  // assumed fraction of rays that hit a specular surface
+constexpr double kScatterings = 32;     // assumed scattering events per path if bodies scatter light
 
 double camera_rays_of(const Plan& plan) {
   const bool may_end_early = plan.free_samples || plan.asked.seconds.value_or(0) > 0;
@@ -22,14 +23,14 @@ double camera_rays_of(const Plan& plan) {
 // Assumes that 70 % of the paths survive Russian roulette at each vertex. If diffuse surfaces end paths, half
 // as many survive, or none without other lobes. Each vertex sends one shadow ray. Each path has one
 // connection to each other path of its reuse group. Two rays per sample search for emitters, or
-// kMaxEmissionSamples with lens or motion blur.
+// kMaxEmissionSamples with lens or motion blur. Each scattering event counts as a ray.
 double expected_path_rays(const Scene& scene, const Plan& plan) {
   const MaterialTraits& materials = scene.facts.materials;
   const double surviving = plan.technique->interreflects || !materials.diffuse ? 0.7
                            : materials.non_diffuse                             ? 0.7 * kSpecularShare
                                                                                : 0;
   const double has_emission_pass = plan.lens || plan.shutter > 0 ? kMaxEmissionSamples : 2;
-  double rays = 1 + has_emission_pass + (plan.reuse - 1), share = 1;
+  double rays = 1 + has_emission_pass + (plan.reuse - 1) + (plan.scatters ? kScatterings : 0), share = 1;
   for (int depth = 1; depth <= plan.max_depth; ++depth) {
     rays += share * (1 + surviving);
     share *= surviving;

@@ -280,8 +280,23 @@ class Planner {
       return decide("nested media", "none", "bodies of transparent materials contain and touch no others");
     plan_.media = true;
     plan_.eye_in_media = may_start_in(media);
+    plan_.eye_passes = plan_.eye_in_media || media.like_air();
     decide("nested media", plan_.eye_in_media ? "followed from the eye" : "followed",
-           media.where + " and " + media.other + " may be in one place");
+           media.where.empty() ? media.scattering + " scatters light inside"
+                               : media.where + " and " + media.other + " may be in one place");
+    choose_scattering();
+  }
+  void choose_scattering() {
+    const Media& media = scene_.media;
+    if (!media.scatters()) return;
+    plan_.scatters = plan_.technique->interreflects;
+    if (plan_.scatters)
+      return decide("scattering inside bodies", "random walk",
+                    "at most " + std::to_string(kMaxScatterings) + " events between two surfaces",
+                    Bound::unknown());
+    decide("scattering inside bodies", "none",
+           std::string(plan_.technique->name) + " only attenuates light there; path scatters it",
+           Bound::unknown());
   }
   // Returns whether the bounds of a body contain the eye, extended by the lens, or whether the camera has no
   // eye.

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "core/model/technique.h"
 #include "core/params/params.h"
 
 namespace orrery {
@@ -20,7 +22,7 @@ std::string metres(double x) { return number_text(x) + " m"; }
 class Limits {
  public:
   Limits(const Scene& scene, const Plan& plan)
-      : facts_(scene.facts), plan_(plan), magnitude_(facts_.magnitude) {
+      : scene_(scene), facts_(scene.facts), plan_(plan), magnitude_(facts_.magnitude) {
     const double eye = max_component(abs(plan.frame.eye));
     if (eye > magnitude_.value) magnitude_ = {eye, "/camera/eye"};
   }
@@ -35,6 +37,7 @@ class Limits {
     const double pixel = footprint();
     take_length(pixel, "a pixel is " + metres(pixel) + " wide at the nearest object");
     take_mirrors();
+    take_mean_free_path();
     if (facts_.smallest_feature.value < kMinLengthInFloat)
       take({0, facts_.smallest_feature.where + " has features as small as " +
                    metres(facts_.smallest_feature.value) + ": products of such lengths underflow in float"});
@@ -68,6 +71,18 @@ class Limits {
     return std::max(outside, box.diagonal() / 16);
   }
 
+  // The steps of a random walk must change the coordinates.
+  void take_mean_free_path() {
+    const Media& media = scene_.media;
+    if (!plan_.technique->interreflects || !media.scatters()) return;
+    double rate = 0;
+    for (std::size_t i = 0; i < media.bodies.size(); ++i)
+      if (media.closed[i] != 0 && media.bodies[i].scatters())
+        rate = std::max(rate, max_component(-media.bodies[i].log2_filter));
+    const double path = 1 / (rate * std::numbers::ln2);
+    take_length(path, "the mean free path in " + media.scattering + " or another body is " + metres(path));
+  }
+
   // Limits the error of the ray direction after the last mirror.
   void take_mirrors() {
     const MirrorChain& chain = facts_.mirrors;
@@ -78,6 +93,7 @@ class Limits {
               " may multiply the rounding error by " + number_text(chain.growth)});
   }
 
+  const Scene& scene_;
   const SceneFacts& facts_;
   const Plan& plan_;
   LocatedValue magnitude_;

@@ -249,6 +249,11 @@ int smooth_primitive(const Scene& scene) {
   return -1;
 }
 
+// Returns whether a sampled direction may hit the light.
+bool can_be_hit(const LightSet& lights, int index) {
+  return lights.traits().parallel ? lights.extended(index) : !lights.traits().delta;
+}
+
 // Returns a warning about the first light that no sampled direction can hit. Its caustics are lost: a path
 // that reaches the light by way of a specular surface has probability 0. `detail` is empty unless
 // loses_caustics() is true; see there for the conditions.
@@ -259,7 +264,7 @@ Problem lost_caustic(const Scene& scene, const Plan& plan) {
     const LightSet& lights = *scene.light_sets[set];
     const bool parallel = lights.traits().parallel;
     if (lights.intensity(index) == Vec3d(0)) continue;
-    if (parallel ? lights.extended(index) : !lights.traits().delta) continue;
+    if (can_be_hit(lights, index)) continue;
     const int smooth = smooth_primitive(scene);
     if (smooth < 0) return {};
     char instead[96];
@@ -292,6 +297,43 @@ Problem created_energy(const Scene& scene, const Plan& plan) {
           "material reflects and transmits up to " + percents(most.value) + " of the incoming light"};
 }
 
+// Returns whether all used materials whose bodies scatter light have smooth surfaces.
+bool scatters_behind_smooth_surfaces(const Scene& scene) {
+  std::vector<char> used;
+  for (const std::int32_t material : scene.material_of) {
+    if (static_cast<std::size_t>(material) >= used.size())
+      used.resize(static_cast<std::size_t>(material) + 1);
+    used[static_cast<std::size_t>(material)] = 1;
+  }
+  std::size_t number = 0;
+  for (const auto& set : scene.materials)
+    for (int i = 0; i < set->size(); ++i, ++number) {
+      const auto medium = set->medium(i);
+      if (medium && medium->scatters() && number < used.size() && used[number] && !set->limits(i).specular)
+        return false;
+    }
+  return true;
+}
+
+// Returns a warning about bodies that scatter light: the technique does not scatter, or no light enters.
+Problem missing_scattering(const Scene& scene, const Plan& plan) {
+  const Media& media = scene.media;
+  if (!plan.media || !media.scatters()) return {};
+  if (!plan.scatters)
+    return {media.scattering, std::string(plan.technique->name) +
+                                  " does not scatter light inside bodies, so they are darker; set technique "
+                                  "to path"};
+  const bool surrounded = scene.background != Vec3d(0) || scene.environment;
+  if (surrounded || scene.facts.materials.emits || !any_light_shines(scene)) return {};
+  for (const auto& [set, index] : scene.lights)
+    if (scene.light_sets[set]->intensity(index) != Vec3d(0) && can_be_hit(*scene.light_sets[set], index))
+      return {};
+  if (!scatters_behind_smooth_surfaces(scene)) return {};
+  return {media.scattering,
+          "no light enters the body (no path through a smooth surface can hit a light without extent); use a "
+          "lamp, or set roughness to 0.2"};
+}
+
 std::vector<Problem> warnings(const Scene& scene, const Plan& plan, bool empty) {
   std::vector<Problem> found;
   if (is_unlit(scene, plan))
@@ -301,6 +343,7 @@ std::vector<Problem> warnings(const Scene& scene, const Plan& plan, bool empty) 
   if (Problem creates = created_energy(scene, plan); !creates.detail.empty())
     found.push_back(std::move(creates));
   if (Problem lost = lost_caustic(scene, plan); !lost.detail.empty()) found.push_back(std::move(lost));
+  if (Problem dark = missing_scattering(scene, plan); !dark.detail.empty()) found.push_back(std::move(dark));
   if (empty) found.push_back({"/camera", "nothing is in view; the image shows only the background"});
   return found;
 }

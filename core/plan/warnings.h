@@ -18,6 +18,8 @@ namespace orrery {
 //    emission, contains no other primitive;
 //  - a material reflects over 100.5 % of the light, if TechniqueType::draws_light is true;
 //  - caustics are missing, see loses_caustics();
+//  - a body scatters light inside, but the technique does not, or no light enters because all such bodies
+//    have smooth surfaces and no sampled direction can hit a light;
 //  - nothing is in view, because the bounds of all primitives are outside the view volume. Not tested if the
 //    shutter is open for longer than an instant.
 // The time is bounded for any scene. With more than 20,000 primitives, or more than 8 shapes around the eye,

@@ -114,7 +114,14 @@ LaneGroups Wavefront<T>::find_vertices(const LaneGroups& groups) {
   accelerator_.closest(v.paths->rays, groups, v.hits, counts_->accelerator);
   const LaneGroups met =
       find_surfaces(geometry_, plan_.fields, *v.paths, groups, v.hits, v.surface, v.radiance);
-  return media_ ? media_->pass(*v.paths, groups, v.hits, v.surface, v.radiance, *counts_) : met;
+  if (!media_) return met;
+  const LaneGroups passed = media_->pass(*v.paths, groups, draws(), v.hits, v.surface, v.radiance, *counts_);
+  media_->for_each_omitted([&](int lane, const Vec3<T>& throughput) {
+    typename N::mask_type mask(false);
+    mask[static_cast<std::size_t>(lane % kWidth<T>)] = true;
+    record_omitted(lane - lane % kWidth<T>, mask, Vec3<N>(throughput));
+  });
+  return passed;
 }
 
 template <class T>

@@ -214,6 +214,12 @@ constexpr std::array kResults{
     of_stats(
         "cut_rays", [](In r) { return Json(r.stats->counts.cut_rays); }, "not traced",
         [](In r) { return formatted("%14llu rays", Count{r.stats->counts.cut_rays}); }),
+    of_stats(
+        "scatterings", [](In r) { return Json(r.stats->counts.scatterings); }, "scattered",
+        [](In r) {
+          const Count count{r.stats->counts.scatterings};
+          return count > 0 ? formatted("%14llu events inside bodies", count) : "";
+        }),
     Row{.in = {.orbit_part = false, .orbit_frame = false, .job_step = false},
         .description = "Error estimate of an image with an even number of samples. RMS error of a pixel in "
                        "linear radiance with its 95 % confidence interval; RMS errors of 4 x 4 and 32 x 32 "

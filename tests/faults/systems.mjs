@@ -46,4 +46,22 @@ export const systemFaults = [
     target: "test_techniques",
     tests: ["ScanLine.BlendsCoincidentTransparentSurfaces"],
   },
+  {
+    fault: 16,
+    about: "scattering distances of all channels have the density of one channel",
+    file: "core/lighting/random_walk.cpp",
+    from: "const Vec3<N> weighted = throughput * density;",
+    to: "const Vec3<N> weighted = throughput * density.x;",
+    target: "test_lighting",
+    tests: ["Subsurface.BoundsWeightsOfDifferentChannels", "Subsurface.ChannelsMatchMediaOfOneColour"],
+  },
+  {
+    fault: 16,
+    about: "scattering turns the ray against the mean cosine",
+    file: "core/lighting/random_walk.cpp",
+    from: "henyey_greenstein_direction(direction, anisotropy_.at(i), u, v)",
+    to: "henyey_greenstein_direction(direction, -anisotropy_.at(i), u, v)",
+    target: "test_lighting",
+    tests: ["Subsurface.SlabMatchesDiscreteOrdinates"],
+  },
 ];

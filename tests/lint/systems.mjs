@@ -75,6 +75,13 @@ export const kGroups = [
         "texture-checker, texture-noise, texture-bump",
         "Checker.AveragesIntervalsExactly, GradientNoise.HasPeriod256, ImagePyramid.ReturnsTexelsAtTheirCentres",
       ],
+      [
+        "L13",
+        "subsurface scattering, fog in bodies",
+        "`subsurface` with `albedo`, `mean_free_path`, `anisotropy`",
+        "subsurface",
+        "Subsurface.SlabMatchesDiscreteOrdinates, Subsurface.IsInvisibleInUniformLight, Subsurface.WithoutAlbedoEqualsFilterOfGlass",
+      ],
     ],
   ],
   [

@@ -32,6 +32,8 @@ const Material kMaterials[] = {
     {"FrostedGlassFromInside", "{'type': 'glass', 'ior': 1.5, 'roughness': 0.5}", -1, 1.5},
     {"RougherGlass", "{'type': 'glass', 'ior': 1.8, 'roughness': 0.6}", 1, 1.8},
     {"RougherGlassFromInside", "{'type': 'glass', 'ior': 1.8, 'roughness': 0.6}", -1, 1.8},
+    {"RoughWax",
+     "{'type': 'subsurface', 'ior': 1.5, 'roughness': 0.5, 'albedo': 0.9, 'mean_free_path': 1e12}", 1, 1.5},
     {"RoughBubble", "{'type': 'glass', 'ior': 0.75, 'roughness': 0.6}", 1, 0.75},
     {"Plastic", "{'type': 'plastic', 'reflectance': [0.9, 0.5, 0.1], 'roughness': 0.4}"},
     {"BlackPlastic", "{'type': 'plastic', 'reflectance': 0, 'roughness': 0.7}"},

@@ -51,6 +51,26 @@ TEST(Warnings, ReportsUnlitScene) {
   EXPECT_EQ(warned(scene), "");
 }
 
+TEST(Warnings, ReportsMissingScattering) {
+  Json scene = lit(kBall);
+  scene["ambient"] = {0, 0, 0};
+  scene["materials"]["white"] = json("{'type': 'subsurface', 'albedo': 0.9, 'mean_free_path': 0.1}");
+  EXPECT_EQ(warned(scene), "/objects/0 ") << "the default technique does not scatter";
+  scene["render"]["technique"] = "path";
+  EXPECT_EQ(warned(scene), "/objects/0 ") << "the surface is smooth and the sun has no extent";
+  Json rough = scene, sun = scene, sky = scene, clear = scene, open = scene;
+  rough["materials"]["white"]["roughness"] = 0.2;
+  EXPECT_EQ(warned(rough), "");
+  sun["lights"][0]["angle_degrees"] = 0.53;
+  EXPECT_EQ(warned(sun), "");
+  sky["background"] = {1, 1, 1};
+  EXPECT_EQ(warned(sky), "");
+  clear["materials"]["white"]["albedo"] = 0;
+  EXPECT_EQ(warned(clear), "");
+  open["objects"][0] = {{"type", "disk"}, {"center", {0, 0, 0}}, {"normal", {0, 0, 1}}, {"radius", 1}};
+  EXPECT_EQ(warned(open), "") << "open surfaces only attenuate";
+}
+
 TEST(Warnings, ReportsEnergyCreatingMaterials) {
   Json scene = lit(kBall);
   scene["materials"]["white"] =

@@ -130,6 +130,44 @@ TEST(NestedMedia, HidesBodyOfSameIndex) {
     }
 }
 
+// Camera rays that pass invisible surfaces collect the light behind them.
+TEST(NestedMedia, ShowsLightBehindBodiesOfAir) {
+  for (const char* type : {"refractive", "glass"})
+    for (const char* technique : {"whitted", "distributed", "path"}) {
+      const Json air{{"type", type}, {"ior", 1}};
+      Json bodies =
+          scene({ball({0, 0, 0}, 1, "air"), ball({0.2, 0, 0}, 0.5, "air"), layer(-3, -2, 1, "lamp")},
+                {{"air", air}, {"lamp", {{"type", "lambert"}, {"emission", {3, 2, 1}}}}});
+      Json alone = bodies;
+      alone["objects"] = {bodies["objects"][2]};
+      RenderRequest request = in_double(size(24, 24));
+      request.technique = technique;
+      request.samples = 2;
+      request.reuse = 1;
+      EXPECT_LE(largest_difference(render(alone, request), render(bodies, request)), 1e-6)
+          << type << technique;
+    }
+}
+
+// Shadow rays that stay inside a body are attenuated.
+TEST(NestedMedia, AttenuatesLightOfLampsInside) {
+  for (const char* technique : {"whitted", "distributed", "path"}) {
+    Json ink = scene({layer(-2, 2, 5, "ink"), layer(-1, -0.5, 4, "white")}, {{"ink", fog({0.5, 1, 0.25})}});
+    ink["background"] = {0, 0, 0};
+    Json clear = ink;
+    clear["materials"]["ink"] = fog({1, 1, 1});
+    for (Json* one : {&ink, &clear}) (*one)["lights"] = {{{"type", "point"}, {"position", {0, 0, 1}}}};
+    RenderRequest request = deep(3);
+    request.technique = technique;
+    const Ray<double> down{{0, 0, 5}, {0, 0, -1}};  // 2.5 m inside the ink, and 1.5 m from the lamp
+    const Vec3d seen = Tracing(ink, request).trace(down).radiance,
+                without = Tracing(clear, request).trace(down).radiance;
+    const Vec3d expected(without.x * std::pow(0.5, 4), without.y, without.z * std::pow(0.25, 4));
+    EXPECT_GT(without.x, 0.01) << technique;
+    EXPECT_LE(length(seen - expected), 1e-9) << technique;
+  }
+}
+
 // A bubble turns rays away from its axis by twice the difference of the angles at its surface.
 TEST(NestedMedia, DivergesRaysAtBubble) {
   const Json bubble = scene({layer(-3, 3, 9, "glass"), ball({0, 0, 0}, 1, "air")},
