@@ -67,7 +67,8 @@ TEST(Warnings, ReportsMissingScattering) {
   EXPECT_EQ(warned(sky), "");
   clear["materials"]["white"]["albedo"] = 0;
   EXPECT_EQ(warned(clear), "");
-  open["objects"][0] = {{"type", "disk"}, {"center", {0, 0, 0}}, {"normal", {0, 0, 1}}, {"radius", 1}};
+  open["objects"][0] =
+      json("{'type': 'disk', 'center': [0, 0, 0], 'normal': [0, 0, 1], 'radius': 1, 'material': 'white'}");
   EXPECT_EQ(warned(open), "") << "open surfaces only attenuate";
 }
 
