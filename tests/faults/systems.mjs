@@ -53,7 +53,7 @@ export const systemFaults = [
     from: "const Vec3<N> weighted = throughput * density;",
     to: "const Vec3<N> weighted = throughput * density.x;",
     target: "test_lighting",
-    tests: ["Subsurface.BoundsWeightsOfDifferentChannels", "Subsurface.ChannelsMatchMediaOfOneColour"],
+    tests: ["Subsurface.ChannelsMatchMediaOfOneColour"],
   },
   {
     fault: 16,
