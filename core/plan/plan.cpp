@@ -11,6 +11,7 @@
 #include "core/cameras/pixel_filter.h"
 #include "core/channels/registry.h"
 #include "core/image/srgb.h"
+#include "core/plan/eye_media.h"
 #include "core/plan/options.h"
 #include "core/plan/rounding.h"
 #include "core/plan/warnings.h"
@@ -279,7 +280,7 @@ class Planner {
     if (!media.nested())
       return decide("nested media", "none", "bodies of transparent materials contain and touch no others");
     plan_.media = true;
-    plan_.eye_in_media = may_start_in(media);
+    plan_.eye_in_media = may_start_in(media, plan_);
     plan_.eye_passes = plan_.eye_in_media || media.like_air();
     decide("nested media", plan_.eye_in_media ? "followed from the eye" : "followed",
            media.where.empty() ? media.scattering + " scatters light inside"
@@ -298,19 +299,6 @@ class Planner {
            std::string(plan_.technique->name) + " only attenuates light there; path scatters it",
            Bound::unknown());
   }
-  // Returns whether the bounds of a body contain the eye, extended by the lens, or whether the camera has no
-  // eye.
-  bool may_start_in(const Media& media) const {
-    const Vec3d lens(plan_.frame.aperture_radius);
-    return plan_.camera->parallel() ||
-           std::any_of(media.bounds.begin(), media.bounds.end(), [&](const Boundsd& box) {
-             Boundsd around = box;
-             around.lo = box.lo - lens;
-             around.hi = box.hi + lens;
-             return around.contains(plan_.frame.eye);
-           });
-  }
-
   void choose_lights() {
     const bool glows = any_light_shines(scene_);
     plan_.direct_light = glows && scene_.facts.materials.lit;

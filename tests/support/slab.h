@@ -4,10 +4,10 @@
 namespace orrery::test {
 
 struct SlabMedium {
-  double thickness;  // optical
+  double thickness;  // in mean free paths
   double albedo;
-  double anisotropy = 0;  // of Henyey and Greenstein
-  double index = 1;       // of refraction, relative to the surroundings
+  double anisotropy = 0;  // mean cosine g of Henyey and Greenstein
+  double index = 1;       // index of refraction, relative to the surroundings
 };
 
 // Fractions of a beam that a slab sends back and lets through, both over all directions, with specular
