@@ -136,8 +136,8 @@ TEST(NestedMedia, ShowsLightBehindBodiesOfAir) {
     for (const char* technique : {"whitted", "distributed", "path"}) {
       const Json air{{"type", type}, {"ior", 1}};
       Json bodies =
-          scene({ball({0, 0, 0}, 1, "air"), ball({0.2, 0, 0}, 0.5, "air"), layer(-3, -2, 1, "lamp")},
-                {{"air", air}, {"lamp", {{"type", "lambert"}, {"emission", {3, 2, 1}}}}});
+          scene({ball({0, 0, 0}, 1, "air"), ball({0.2, 0, 0}, 0.5, "air"), layer(-3, -2, 50, "lamp")},
+                {{"air", air}, {"lamp", {{"type", "lambert"}, {"reflectance", 0}, {"emission", {3, 2, 1}}}}});
       Json alone = bodies;
       alone["objects"] = {bodies["objects"][2]};
       RenderRequest request = in_double(size(24, 24));
