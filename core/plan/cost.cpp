@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kChosenSamples = 16;      // samples per pixel assumed if a budget may end the render early
 constexpr double kSpecularShare = 0.5;  // assumed fraction of rays that hit a specular surface
-constexpr double kScatterings = 32;     // assumed scattering events per path if bodies scatter light
+constexpr double kScatterings = 4;      // assumed scattering events per path if bodies scatter light
 
 double camera_rays_of(const Plan& plan) {
   const bool may_end_early = plan.free_samples || plan.asked.seconds.value_or(0) > 0;
