@@ -14,6 +14,7 @@ struct Constant {
   }
   Vec3d constant() const { return Vec3d(everywhere); }
   Vec3<N> most() const { return everywhere; }
+  Vec3<N> least() const { return everywhere; }
   Vec3<N> radiance(const Vec3<N>&) const { return everywhere; }
 };
 

@@ -7,6 +7,7 @@
 //   static Gradient<double> read(Params&);               in the .cpp that registers the type
 //   Vec3<N> radiance(const Vec3<N>& direction) const;    for a unit direction from the scene
 //   Vec3<N> most() const;                                maximum radiance per channel
+//   Vec3<N> least() const;                               minimum radiance per channel
 //   Vec3d constant() const;                              optional: the radiance of all directions
 // `read_formula<Gradient>` is the factory of the type. Formulas are not light-sampled: their radiance varies
 // so little that BSDF sampling suffices.
@@ -47,6 +48,7 @@ class FormulaEnvironment final : public Environment {
     return std::nullopt;
   }
   Vec3d most() const override { return record_.most(); }
+  Vec3d least() const override { return record_.least(); }
   LightKernelPtr<float> kernel(float) const override {
     return std::make_unique<FormulaKernel<Record, float>>(record_);
   }

@@ -13,6 +13,7 @@ struct Gradient {
   static Gradient<double> read(Params& p);
 
   Vec3<N> most() const { return largest(largest(zenith, horizon), ground); }
+  Vec3<N> least() const { return -largest(largest(-zenith, -horizon), -ground); }
   Vec3<N> radiance(const Vec3<N>& direction) const {
     const N height = max_first(N(ScalarOf<N>(0)), direction.y);
     return select(direction.y >= N(ScalarOf<N>(0)), horizon + (zenith - horizon) * height, ground);

@@ -1,8 +1,13 @@
 #include "core/load/radiance_range.h"
 
+#include <algorithm>
+
+#include "core/base/task_scope.h"
+
 namespace orrery {
 namespace {
 
+constexpr std::size_t kMaxPlanes = 8;  // of OccupiedSpace; each untraced ray is compared with them
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 // Multiplies component by component; 0 times infinity is 0.
@@ -22,15 +27,56 @@ struct DirectLight {
   Vec3d of_points{0.0}, of_extents{0.0};
 };
 
-// Returns bounds for all points of the scene. Assumes distance 0 to all lights if the scene moves or is
-// unbounded.
-DirectLight find_direct_light(const Scene& scene, const SceneFacts& facts) {
-  const bool anywhere = facts.unbounded || !scene.motion.empty() || !facts.bounds.bounded();
+// Extent of the primitives of one material.
+struct MaterialExtent {
+  struct Unbounded {
+    const ShapeSet* shapes;
+    int index;
+  };
+  Boundsd box;                  // of the bounded primitives
+  std::vector<Unbounded> rest;  // the others
+  bool anywhere = false;        // may be at any place
+
+  double distance_to_light(const Vec3d& light) const {
+    if (anywhere) return 0;
+    double least = box.bounded() ? distance_to(box, light) : kUnlimited;
+    for (const auto& [shapes, index] : rest) least = std::min(least, shapes->min_distance(index, light));
+    return least;
+  }
+};
+
+// Returns the extents by material. Materials of instances may be anywhere in the scene, and all materials may
+// be anywhere if the scene moves.
+std::vector<MaterialExtent> find_extents(const Scene& scene, const SceneFacts& facts, std::size_t materials) {
+  std::vector<MaterialExtent> extents(materials);
+  if (scene.lights.empty()) return extents;
+  std::size_t number = 0;
+  for (const auto& shapes : scene.shapes)
+    for (int i = 0; i < shapes->size(); ++i, ++number) {
+      checkpoint(number);
+      MaterialExtent& extent = extents[static_cast<std::size_t>(scene.material_of[number])];
+      const Boundsd box = shapes->bounds(i);
+      if (box.bounded())
+        extent.box.include(box);
+      else
+        extent.rest.push_back({shapes.get(), i});
+    }
+  for (; number < scene.material_of.size(); ++number) {
+    MaterialExtent& extent = extents[static_cast<std::size_t>(scene.material_of[number])];
+    extent.box = facts.bounds;
+    extent.anywhere = facts.unbounded || !facts.bounds.bounded();
+  }
+  for (MaterialExtent& extent : extents) extent.anywhere |= !scene.motion.empty();
+  return extents;
+}
+
+// Returns bounds for all points of a material.
+DirectLight find_direct_light(const Scene& scene, const MaterialExtent& extent) {
   DirectLight found;
   for (const LightPlace& light : scene.lights) {
     const LightSet& set = *scene.light_sets[light.set];
     const LightBounds bounds = set.bounds(light.index);
-    const double distance = anywhere || bounds.parallel ? 0 : distance_to(facts.bounds, bounds.centre);
+    const double distance = bounds.parallel ? 0 : extent.distance_to_light(bounds.centre);
     found.of_points = found.of_points + set.max_incident(light.index, distance);
     found.of_extents =
         found.of_extents + set.max_incident(light.index, std::max(0.0, distance - bounds.radius));
@@ -52,6 +98,32 @@ Vec3d interreflected(const Vec3d& own, const Vec3d& albedo) {
   return {series(own.x, albedo.x), series(own.y, albedo.y), series(own.z, albedo.z)};
 }
 
+// Returns the space of all surfaces. The box is larger than the bounds by a margin for rounding.
+OccupiedSpace find_occupied(const Scene& scene, const SceneFacts& facts) {
+  constexpr double kMargin = 1e-9;  // times the largest coordinate
+  OccupiedSpace found;
+  if (!scene.motion.empty() || scene.atmosphere) return found;
+  std::size_t unbounded_instances = 0;
+  for (const Instance& instance : scene.instances)
+    for (const auto& shapes : scene.models[instance.model].shapes)
+      for (int i = 0; i < shapes->size(); ++i) unbounded_instances += !shapes->bounds(i).bounded();
+  if (unbounded_instances > 0) return found;
+  if (facts.unbounded)
+    for (const auto& shapes : scene.shapes)
+      for (int i = 0; i < shapes->size(); ++i) {
+        if (shapes->bounds(i).bounded()) continue;
+        const auto plane = shapes->plane(i);
+        if (!plane || found.planes.size() == kMaxPlanes) return {};
+        found.planes.push_back(*plane);
+      }
+  found.box = facts.bounds;
+  if (!found.box.bounded()) return found;
+  const Vec3d margin(kMargin * facts.magnitude.value);
+  found.box.lo = found.box.lo - margin;
+  found.box.hi = found.box.hi + margin;
+  return found;
+}
+
 // Returns `most`, but infinity in channels with light that a surface may amplify.
 Vec3d amplified(const Vec3d& most, const Vec3d& transmitted) {
   const auto of = [](double light, double share) { return light > 0 && share > 1 ? kUnlimited : light; };
@@ -71,7 +143,11 @@ Vec3d amplified(const Vec3d& most, const Vec3d& transmitted) {
 // ReflectionLimits::transmitted add this share t of V to their own light, so V is at most own / (1 - t). V
 // has no bound if t exceeds 1.
 void find_radiance_ranges(const Scene& scene, const std::vector<bool>& used, SceneFacts& facts) {
-  const DirectLight light = find_direct_light(scene, facts);
+  facts.occupied = find_occupied(scene, facts);
+  if (!scene.atmosphere)
+    facts.sky_radiance = {scene.environment ? scene.environment->least() : scene.background,
+                          max_sky_radiance(scene)};
+  const std::vector<MaterialExtent> extents = find_extents(scene, facts, used.size());
   Vec3d tree = max_sky_radiance(scene), paths = tree;
   for (const LightPlace& place : scene.lights)  // sun discs add to the sky and may overlap
     paths = paths + scene.light_sets[place.set]->max_radiance_at_infinity(place.index);
@@ -82,6 +158,7 @@ void find_radiance_ranges(const Scene& scene, const std::vector<bool>& used, Sce
     for (int i = 0; i < set->size(); ++i, ++number) {
       if (number >= used.size() || !used[number]) continue;
       const ReflectionLimits limits = set->limits(i);
+      const DirectLight light = find_direct_light(scene, extents[number]);
       facts.albedo = largest(facts.albedo, limits.albedo);
       const Vec3d ambient = product(limits.ambient, scene.ambient), emission = scene.emission[number];
       const Vec3d shines = interreflected(emission, Vec3d(limits.specular ? 1 : 0));

@@ -18,7 +18,8 @@ class Environment {
   // Returns the radiance if it is the same in all directions, otherwise nullopt. A constant environment
   // becomes the background of the scene and needs no kernel.
   virtual std::optional<Vec3d> constant() const { return std::nullopt; }
-  virtual Vec3d most() const = 0;  // largest radiance over all directions, per channel
+  virtual Vec3d most() const = 0;                   // largest radiance over all directions, per channel
+  virtual Vec3d least() const { return Vec3d(0); }  // lower bound over all directions, per channel
   // Returns true if LightKernel::sample_each() can sample directions toward bright regions.
   virtual bool sampled() const { return false; }
   // Returns a kernel with one light, the environment, at index 0. beyond() returns the radiance.

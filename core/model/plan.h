@@ -11,6 +11,7 @@
 #include "core/math/exposure.h"
 #include "core/model/bound.h"
 #include "core/model/camera.h"
+#include "core/model/occupied_space.h"
 #include "core/model/render_settings.h"
 
 namespace orrery {
@@ -52,7 +53,10 @@ struct Plan {
   // Upper bound on the difference between two samples of a pixel, per channel, in radiance. Infinite if there
   // is no bound.
   double sample_range = std::numeric_limits<double>::infinity();
-  Vec3d cut_range;  // upper bound on the radiance error of one untraced ray; may be infinite
+  // Upper bounds on the radiance error of one untraced ray: of any ray, which may be infinite, and of a ray
+  // that misses `occupied`.
+  Vec3d cut_range, cut_range_beyond;
+  OccupiedSpace occupied;
   View view = View::picture;
   std::uint64_t seed = 0;
   bool reorder = false;  // rays are sorted before traversal

@@ -16,6 +16,7 @@
 #include "core/model/light.h"
 #include "core/model/material.h"
 #include "core/model/media.h"
+#include "core/model/occupied_space.h"
 #include "core/model/radiance_range.h"
 #include "core/model/render_settings.h"
 #include "core/model/rounding.h"
@@ -49,7 +50,9 @@ struct SceneFacts {
   bool unbounded = false;                                            // some primitive is unbounded
   bool smooth = false;                                               // some mesh has vertex normals
   RadianceRange tree_radiance, distributed_radiance, path_radiance;  // one per kind of technique
-  Vec3d albedo;                                                      // bound on the albedos of used materials
+  RadianceRange sky_radiance;  // of rays that miss everything, without lights at infinity
+  OccupiedSpace occupied;
+  Vec3d albedo;  // bound on the albedos of used materials
   // The members below, except max_albedo, are inputs to the choice of the number type.
   //
   // Largest absolute coordinate, including the anchors of unbounded primitives.

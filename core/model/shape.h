@@ -9,6 +9,7 @@
 #include "core/math/bounds.h"
 #include "core/math/exposure.h"
 #include "core/model/asset_source.h"
+#include "core/model/occupied_space.h"
 #include "core/model/packet.h"
 
 // Shapes. A scene stores all shapes of one type in a ShapeSet, in double precision. For rendering, each set
@@ -196,6 +197,11 @@ class ShapeSet {
   // Returns the largest absolute coordinate of the anchor of an unbounded primitive, or 0 if the primitive is
   // bounded.
   virtual double anchor_magnitude(int /*index*/) const { return 0; }
+  // Returns a lower bound of the distance from `point` to an unbounded primitive. REQUIRES: the primitive is
+  // unbounded.
+  virtual double min_distance(int /*index*/, const Vec3d& /*point*/) const { return 0; }
+  // Returns the plane that contains an unbounded primitive, or nullopt.
+  virtual std::optional<OccupiedSpace::Plane> plane(int /*index*/) const { return std::nullopt; }
   virtual ShapeTraits traits() const = 0;
   // Returns the surface that begins with primitive `index`. Takes time proportional to its size.
   virtual Shell shell(int index) const { return {index + 1, traits().closed || traits().half_space}; }

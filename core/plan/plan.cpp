@@ -63,6 +63,8 @@ class Planner {
       choose_paths();
     } else {
       plan_.cut_range = facts.tree_radiance.max_deviation(scene_.ambient);
+      plan_.cut_range_beyond = facts.sky_radiance.max_deviation(scene_.ambient);
+      plan_.occupied = facts.occupied;
       const bool negative = plan_.filtered && has_negative_lobes(*plan_.asked.filter);
       if (!negative)  // otherwise infinite; ambient light replaces untraced rays
         plan_.sample_range = max_component(largest(facts.tree_radiance.most, scene_.ambient));

@@ -28,6 +28,9 @@ struct Cylinder {
   }
 
   Vec3d anchor() const { return center; }
+  double min_distance(const Vec3d& from) const {
+    return std::abs(length(cross(from - center, axis)) - radius);
+  }
 
   std::optional<Patch> patch() const {
     if (std::isinf(half_length)) return {};

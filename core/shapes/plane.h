@@ -18,6 +18,8 @@ struct Plane {
 
   Boundsd bounds() const { return Boundsd::everything(); }
   Vec3d anchor() const { return point; }
+  OccupiedSpace::Plane plane() const { return {point, normal}; }
+  double min_distance(const Vec3d& from) const { return std::abs(dot(from - point, normal)); }
 
   // Returns infinity for a miss. The quotient of a parallel ray is infinite or NaN, and counts as a miss.
   N distance(const Ray<N>& ray) const {

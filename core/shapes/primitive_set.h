@@ -14,11 +14,13 @@
 //   Surface<N> surface(const Ray<N>&, const N& t) const;
 //   SmoothSurface<N> smooth(const Ray<N>&) const;   if it has vertex normals: see ShapeKernel::smooth()
 //   SurfacePoint<N> parameters(const Ray<N>&, const Vec3<N>& position) const;   of a position on the shape
-//   void tessellate(const TessellationView&, int primitive, Tessellation&) const;   of a Sphere<double>; in
-//   the .cpp Vec3d anchor() const;                         if it may be unbounded: see
-//   ShapeSet::anchor_magnitude() std::vector<HullTriangle> hull() const;       if tighter than bounds(): see
-//   ShapeKernel Patch patch() const;                          of a Sphere<double>, if light can be sampled
-//   from it;
+//   void tessellate(const TessellationView&, int primitive, Tessellation&) const;   of a Sphere<double>,
+//                                                 in the .cpp
+//   Vec3d anchor() const;                         if it may be unbounded: see ShapeSet::anchor_magnitude()
+//   double min_distance(const Vec3d&) const;      if it may be unbounded: see ShapeSet
+//   OccupiedSpace::Plane plane() const;           if it is part of a plane: see ShapeSet
+//   std::vector<HullTriangle> hull() const;       if tighter than bounds(): see ShapeKernel
+//   Patch patch() const;                          of a Sphere<double>, if light can be sampled from it;
 //                                                 std::optional<Patch> if that depends on the shape
 //   Core, core()                                  if distance() needs only part of it: see packed_records.h
 // and `make_shape_set<Sphere>` as its factory. Formulas are evaluated for scalars and for lanes.
@@ -175,6 +177,20 @@ class PrimitiveSet final : public ShapeSet {
       return record.bounds().bounded() ? 0 : max_component(abs(record.anchor()));
     else
       return 0;
+  }
+  double min_distance(int index, const Vec3d& point) const override {
+    const Record<double>& record = records_[static_cast<std::size_t>(index)];
+    if constexpr (requires { record.min_distance(point); })
+      return record.min_distance(point);
+    else
+      return 0;
+  }
+  std::optional<OccupiedSpace::Plane> plane(int index) const override {
+    const Record<double>& record = records_[static_cast<std::size_t>(index)];
+    if constexpr (requires { record.plane(); })
+      return record.plane();
+    else
+      return std::nullopt;
   }
   ShapeTraits traits() const override { return Record<double>::kTraits; }
   std::optional<Patch> patch(int index) const override {

@@ -1,3 +1,4 @@
+#include "core/math/mirror.h"
 #include "core/techniques/specular_tree.h"
 
 namespace orrery {
@@ -14,10 +15,16 @@ class Raycast final : public SpecularTree<T> {
   using N = Lanes<T>;
 
   void scatter(const LaneGroups& groups) override {
+    const auto& v = *this->vertices_;
     const auto& specular = this->specular_;
-    for (const int i : groups)
-      for (const Vec3<N>& weight : {specular.reflectance.at(i), specular.transmittance.at(i)})
-        this->cut(i, this->specular_lanes(i) && max_component(weight) > N(T(0)), weight);
+    const auto cut = [&](int i, const Vec3<N>& direction, const Vec3<N>& weight) {
+      this->cut(i, this->specular_lanes(i) && max_component(weight) > N(T(0)), direction, weight);
+    };
+    for (const int i : groups) {
+      cut(i, mirrored(v.paths->rays.direction.at(i), v.surface.normal.at(i), v.surface.geometric.at(i)),
+          specular.reflectance.at(i));
+      cut(i, specular.refracted.at(i), specular.transmittance.at(i));
+    }
   }
 };
 

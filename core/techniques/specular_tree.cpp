@@ -44,14 +44,14 @@ void SpecularTree<T>::follow(Kind kind, int i, const MaskOf<N>& mask, const Vec3
     traced = typename N::mask_type(false);
   else if (plan.min_contribution > 0)
     traced = wanted && max_component(throughput) >= N(static_cast<T>(plan.min_contribution));
-  if (!all(traced == wanted)) cut(i, wanted && !traced, weight);
+  if (!all(traced == wanted)) cut(i, wanted && !traced, direction, weight);
   if (any(traced)) this->spawn(kind, i, traced, direction, throughput);
 }
 
 template <class T>
-void SpecularTree<T>::cut(int i, const MaskOf<N>& mask, const Vec3<N>& weight) {
+void SpecularTree<T>::cut(int i, const MaskOf<N>& mask, const Vec3<N>& direction, const Vec3<N>& weight) {
   add_ambient(i, mask, weight);
-  this->record_omitted(i, mask, this->vertices_->paths->throughput.at(i) * weight);
+  this->record_omitted(i, mask, this->vertices_->paths->throughput.at(i) * weight, direction);
 }
 
 template <class T>

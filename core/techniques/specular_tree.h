@@ -26,8 +26,8 @@ class SpecularTree : public Wavefront<T> {
   // channel. Cuts rays beyond Plan::max_depth, and rays whose throughput is below Plan::min_contribution in
   // every channel.
   void follow(Kind kind, int i, const MaskOf<N>& mask, const Vec3<N>& direction, const Vec3<N>& weight);
-  // Adds ambient light in place of untraced rays, and records the rays as omitted.
-  void cut(int i, const MaskOf<N>& mask, const Vec3<N>& weight);
+  // Adds ambient light in place of untraced rays along `direction`, and records the rays as omitted.
+  void cut(int i, const MaskOf<N>& mask, const Vec3<N>& direction, const Vec3<N>& weight);
   // Adds ambient light in place of untraced rays.
   void add_ambient(int i, const MaskOf<N>& mask, const Vec3<N>& weight);
   void shade(const LaneGroups& groups, const LaneGroups& met) final;

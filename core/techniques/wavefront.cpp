@@ -157,7 +157,29 @@ void Wavefront<T>::spawn(int i, const MaskOf<N>& mask, const Vec3<N>& direction,
 
 template <class T>
 void Wavefront<T>::record_omitted(int i, const MaskOf<N>& mask, const Vec3<N>& weight) {
-  const Vec3<T> range(plan_.cut_range);
+  add_omitted(i, mask, weight, plan_.cut_range);
+}
+
+template <class T>
+void Wavefront<T>::record_omitted(int i, const MaskOf<N>& mask, const Vec3<N>& weight,
+                                  const Vec3<N>& direction) {
+  const Vec3<N> origin = vertices_->surface.origin_toward(i, direction);
+  MaskOf<N> beyond(false);
+  for (unsigned bits = bits_of(mask); bits != 0; bits &= bits - 1) {
+    const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+    const auto at = [&](const Vec3<N>& v) {
+      return Vec3d(double{v.x[lane]}, double{v.y[lane]}, double{v.z[lane]});
+    };
+    beyond[lane] = plan_.occupied.is_missed(at(origin), at(direction));
+  }
+  add_omitted(i, mask && beyond, weight, plan_.cut_range_beyond);
+  add_omitted(i, mask && !beyond, weight, plan_.cut_range);
+}
+
+template <class T>
+void Wavefront<T>::add_omitted(int i, const MaskOf<N>& mask, const Vec3<N>& weight,
+                               const Vec3d& most_of_ray) {
+  const Vec3<T> range(most_of_ray);
   // Avoids 0 * infinity.
   const auto product = [](T share, T most) { return share > 0 ? share * most : T(0); };
   for (unsigned bits = bits_of(mask); bits != 0; bits &= bits - 1) {

@@ -59,6 +59,9 @@ class Wavefront : public Tracer<T> {
   // Records untraced rays with throughput `weight` in the lanes `mask`: adds `weight` times Plan::cut_range
   // to the omitted light of the camera rays, and counts the rays.
   void record_omitted(int i, const MaskOf<N>& mask, const Vec3<N>& weight);
+  // As above, for rays along `direction` from the surfaces of register i. Rays that miss Plan::occupied count
+  // with Plan::cut_range_beyond.
+  void record_omitted(int i, const MaskOf<N>& mask, const Vec3<N>& weight, const Vec3<N>& direction);
 
   // Returns the light removed by clamping, by camera ray.
   Vec3Array<T>& clamped() { return out_->clamped; }
@@ -74,6 +77,8 @@ class Wavefront : public Tracer<T> {
   std::unique_ptr<AtmosphereStage<T>> atmosphere_;  // null if the scene has no atmosphere
 
  private:
+  // Adds `weight` times `range` to the omitted light in the lanes `mask` of register i, and counts the rays.
+  void add_omitted(int i, const MaskOf<N>& mask, const Vec3<N>& weight, const Vec3d& range);
   void start(const RayBatch<T>& camera_rays);
   void run(PathBatch<T>& paths);
   // Sets the time of each ray to the time of its camera ray.

@@ -124,6 +124,15 @@ export const certificateFaults = [
   },
   {
     fault: 13,
+    about: "untraced rays toward a plane count as rays to the sky",
+    file: "core/model/occupied_space.h",
+    from: "dot(direction, plane.normal) <= 0;",
+    to: "dot(direction, plane.normal) < -1;",
+    target: "test_render",
+    tests: ["Ledger.BoundsErrorOfRandomScenes*"],
+  },
+  {
+    fault: 13,
     about: "pixels that reuse paths count as independent",
     file: "core/accuracy/certificate.cpp",
     from: "stats.halves.upper_mean(part, reused)",

@@ -49,7 +49,7 @@ void for_each_tile(const Plan& plan, float dx, float dy, const Visit& visit) {
 
 Samples render_shifted(const PreparedScene& scene, const Plan& of_picture, float dx, float dy) {
   Plan plan = of_picture;
-  plan.cut_range = Vec3d(1);  // the tracer then counts the weights of omitted rays
+  plan.cut_range = plan.cut_range_beyond = Vec3d(1);  // the tracer then counts the weights of omitted rays
   const TracerPtr<double> tracer = make_tracer(*plan.technique, world_of(scene, plan), plan);
   const auto result = std::make_unique<TraceResult<double>>();
   TraceCounts counts;

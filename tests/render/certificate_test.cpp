@@ -39,8 +39,6 @@ std::vector<Ray<double>> camera_rays(const Plan& plan) {
   return found;
 }
 
-Vec3d product(const Vec3d& a, const Vec3d& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
-
 // Ratios of bound to error, one element per image with omissions.
 struct Tightness {
   std::vector<double> of_max, of_rms;
@@ -55,12 +53,11 @@ void expect_within_bounds(const Json& scene, const RenderRequest& cut, Tightness
   const auto loaded = test::load(scene);
   const Plan plan = make_plan(*loaded, cut);
   const std::vector<Ray<double>> rays = camera_rays(plan);
-  const auto planned = test::Tracing(loaded, cut).trace(rays);
-  const auto full = test::Tracing(loaded, request(20, 1e-5)).trace(rays);
+  const auto planned = test::Tracing(loaded, cut, test::Tracing::Ledger::light).trace(rays);
+  const auto full = test::Tracing(loaded, request(20, 1e-5), test::Tracing::Ledger::light).trace(rays);
   double max_bound = 0, max_error = 0, bounds = 0, errors = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const Vec3d bound = product(planned[i].weights, plan.cut_range);
-    const Vec3d rest = product(full[i].weights, plan.cut_range);
+    const Vec3d bound = planned[i].weights, rest = full[i].weights;
     const Vec3d error = abs(planned[i].radiance - full[i].radiance);
     for (const auto channel : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
       ASSERT_LE(error.*channel, bound.*channel + rest.*channel + 1e-12) << scene.dump().substr(0, 2000);
@@ -86,8 +83,8 @@ TEST(Ledger, BoundsErrorOfRandomScenes) {
   }
   for (const auto& [name, found] : {std::pair{"depth", depth}, {"threshold", threshold}}) {
     ASSERT_GT(found.of_max.size(), 100u);
-    EXPECT_LE(median(found.of_max), 4) << name;
-    EXPECT_LE(median(found.of_rms), 5) << name;
+    EXPECT_LE(median(found.of_max), 2.8) << name;
+    EXPECT_LE(median(found.of_rms), 3.6) << name;
     RecordProperty(std::string(name) + "_max", std::to_string(median(found.of_max)));
     RecordProperty(std::string(name) + "_rms", std::to_string(median(found.of_rms)));
   }

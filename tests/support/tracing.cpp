@@ -41,11 +41,11 @@ class Tracing::Recorder final : public Accelerator<double> {
 
 Tracing::Tracing(const Json& scene, RenderRequest request) : Tracing(load(scene), std::move(request)) {}
 
-Tracing::Tracing(const std::shared_ptr<const Scene>& scene, RenderRequest request) {
+Tracing::Tracing(const std::shared_ptr<const Scene>& scene, RenderRequest request, Ledger ledger) {
   request.precision = Precision::double_precision;
   request.slice = kBatch;
   plan_ = make_plan(*scene, request);
-  plan_.cut_range = Vec3d(1);  // makes the ledger count weights
+  if (ledger == Ledger::weights) plan_.cut_range = plan_.cut_range_beyond = Vec3d(1);
   world_.geometry = make_geometry<double>(scene, *plan_.accelerator);
   auto recorder = std::make_unique<Recorder>(build(*plan_.accelerator, world_.geometry->primitives));
   recorder_ = recorder.get();

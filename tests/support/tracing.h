@@ -15,14 +15,16 @@ namespace orrery::test {
 
 struct TraceOutput {
   Vec3d radiance;
-  Vec3d weights;  // summed weights of the rays that were not traced
+  Vec3d weights;  // summed weights of the rays that were not traced, or the bound of their light
   double cut;     // largest component of `weights`
 };
 
 class Tracing {
  public:
+  enum class Ledger { weights, light };  // meaning of TraceOutput::weights
   // Ignores the precision and the slice of the request.
-  explicit Tracing(const std::shared_ptr<const Scene>& scene, RenderRequest request = {});
+  explicit Tracing(const std::shared_ptr<const Scene>& scene, RenderRequest request = {},
+                   Ledger ledger = Ledger::weights);
   explicit Tracing(const Json& scene, RenderRequest request = {});
   ~Tracing();
 
