@@ -171,6 +171,7 @@ SceneFacts gather_facts(const Scene& scene) {
   const SurfaceGaps spacing = measure_surface_gaps(scene, facts);
   facts.layer_distance = spacing.layer_distance;
   facts.mirrors = spacing.mirrors;
+  facts.turns = spacing.turns;
   return facts;
 }
 

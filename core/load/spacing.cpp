@@ -1,21 +1,19 @@
 #include "core/load/spacing.h"
 
 #include <algorithm>
-#include <deque>
-#include <map>
 #include <optional>
 #include <set>
 
 #include "core/base/task_scope.h"
+#include "core/load/mirror_paths.h"
+#include "core/load/placed_primitives.h"
 #include "core/math/face_normal.h"
 #include "core/math/hemisphere.h"
-#include "core/model/batch.h"
 #include "core/model/object_pointer.h"
 
 namespace orrery {
 namespace {
 
-constexpr std::size_t kMaxPrimitives = 256;
 // Sample times of a motion: kEvenMoments evenly spaced times, including both ends, and up to kMaxKeyTimes key
 // times.
 constexpr int kEvenMoments = 9;
@@ -31,61 +29,6 @@ constexpr double kSame = 1e-6;               // relative tolerance of equal dist
 constexpr double kLayerGap = 1e-3;
 constexpr double kParallel = 0.99;  // minimum cosine between the normals of parallel surfaces
 
-// Primitive in the world at one time.
-struct PlacedPrimitive {
-  bool moves;
-  std::size_t object;  // index into Scene::object_runs
-  const ShapeSet* shapes;
-  const ShapeKernel<double>* kernel;
-  int index, number;  // index in the set; number in the scene
-  Affined world_from_model, model_from_world;
-  Boundsd box;  // in the world
-};
-
-struct SurfaceAt {
-  Vec3d position;
-  Vec3d outward;    // unit geometric normal
-  Vec3d shading;    // shading normal, smoothed on meshes
-  double distance;  // along the ray, in units of the length of its direction
-};
-
-// Intersects single rays with primitives and counts the tests.
-class PrimitiveTester {
- public:
-  std::optional<SurfaceAt> meet(const PlacedPrimitive& placed, const Ray<double>& ray) {
-    ++tests_;
-    const Affined& into = placed.model_from_world;
-    rays_.count = 1;
-    rays_.set(0, {into.point(ray.origin), into.vector(ray.direction)},
-              std::numeric_limits<double>::infinity());
-    hits_.t[0] = rays_.t_max[0];
-    hits_.primitive[0] = kNoPrimitive;
-    AcceleratorCounts uncounted;
-    placed.kernel->closest(placed.index, rays_, kOne, hits_, uncounted);
-    if (hits_.primitive[0] == kNoPrimitive) return std::nullopt;
-    placed.kernel->surface(rays_, hits_, kOne, met_);
-    const auto to_world = [&](const Vec3d& n) {  // normals transform by the inverse transpose
-      return safe_normalize(Vec3d(dot(into.x, n), dot(into.y, n), dot(into.z, n))) * met_.side[0];
-    };
-    return SurfaceAt{placed.world_from_model.point(met_.position[0]), to_world(met_.geometric[0]),
-                     to_world(met_.normal[0]), hits_.t[0]};
-  }
-  std::size_t tests() const { return tests_; }
-
- private:
-  static inline const LaneGroups kOne = LaneGroups::single(0);
-  RayBatch<double> rays_{};
-  HitBatch<double> hits_{};
-  SurfaceBatch<double> met_{};
-  std::size_t tests_ = 0;
-};
-
-bool may_meet(const Boundsd& box, const Ray<double>& ray) {
-  if (!box.bounded()) return true;
-  return enters(BoxRay<double>(ray.origin, ray.direction), box.lo, box.hi,
-                std::numeric_limits<double>::max());
-}
-
 // Curved mirrors visible from one curved mirror, as indices into Scene::object_runs. `distance` is the
 // distance to the nearest of these mirrors. `radius` is the radius of curvature of the viewing mirror at the
 // point from which this distance was measured.
@@ -97,17 +40,19 @@ struct VisibleMirrors {
 class LayerGapSearch {
  public:
   LayerGapSearch(const Scene& scene, const SceneFacts& facts)
-      : scene_(scene), magnitude_(std::max(facts.magnitude.value, max_component(abs(scene.placement.eye)))) {
-    for (const auto& set : scene.materials)
-      for (int i = 0; i < set->size(); ++i) shares_.push_back(set->mirrored_share(i));
-  }
+      : scene_(scene),
+        magnitude_(std::max(facts.magnitude.value, max_component(abs(scene.placement.eye)))),
+        primitives_(scene),
+        paths_(scene, primitives_, magnitude_) {}
 
   SurfaceGaps measure() {
     const std::vector<double> times = moments();
     for (std::size_t i = 0; i < times.size(); ++i) {
-      place_all(times[i]);
+      primitives_.place_all(times[i]);
+      if (primitives_.complete()) paths_.trace(static_cast<int>(times.size()));
       measure_placed(i > 0, kMaxTests / times.size() * i, kMaxTests / times.size());
     }
+    spacing_.turns = paths_.turns();
     return spacing_;
   }
 
@@ -140,19 +85,21 @@ class LayerGapSearch {
   void measure_placed(bool moving_alone, std::size_t before, std::size_t tests) {
     max_tests_ = before + tests / 2;
     std::vector<std::vector<Ray<double>>> rays;
-    for (const PlacedPrimitive& placed : placed_)
+    for (const PlacedPrimitive& placed : primitives_.all())
       rays.push_back(moving_alone && !placed.moves ? std::vector<Ray<double>>() : rays_at(placed));
     mirrors_.assign(scene_.object_runs.size(), {});
-    const std::size_t most = std::max(kFewestRays, kManyRays / std::max<std::size_t>(1, placed_.size()));
+    const std::size_t most =
+        std::max(kFewestRays, kManyRays / std::max<std::size_t>(1, primitives_.all().size()));
     for (std::size_t round = 0; round < most; ++round) {
-      for (std::size_t i = 0; i < placed_.size(); ++i) {
+      for (std::size_t i = 0; i < primitives_.all().size(); ++i) {
         checkpoint();
         if (rays[i].empty() || probe_.tests() > max_tests_) continue;
         const std::size_t chosen = round * ((rays[i].size() + most - 1) / most);
-        if (chosen < rays[i].size()) look_around(placed_[i], rays[i][chosen], mirrors_[placed_[i].object]);
+        if (chosen < rays[i].size())
+          look_around(primitives_.all()[i], rays[i][chosen], mirrors_[primitives_.all()[i].object]);
       }
     }
-    for (const PlacedPrimitive& placed : placed_) take_mirror(placed, mirrors_[placed.object]);
+    for (const PlacedPrimitive& placed : primitives_.all()) take_mirror(placed, mirrors_[placed.object]);
     max_tests_ = before + tests;
     measure_pairs(moving_alone);
   }
@@ -160,10 +107,11 @@ class LayerGapSearch {
   // Measures the distance between the surfaces of pairs of primitives. This finds layers that overlap only in
   // part: the first ray passes through the middle of the intersection of both boxes.
   void measure_pairs(bool moving_alone) {
-    for (std::size_t i = 0; i < placed_.size(); ++i) {
+    for (std::size_t i = 0; i < primitives_.all().size(); ++i) {
       checkpoint();
-      for (std::size_t k = i + 1; k < placed_.size() && probe_.tests() < max_tests_; ++k)
-        if (!moving_alone || placed_[i].moves || placed_[k].moves) measure_pair(placed_[i], placed_[k]);
+      for (std::size_t k = i + 1; k < primitives_.all().size() && probe_.tests() < max_tests_; ++k)
+        if (!moving_alone || primitives_.all()[i].moves || primitives_.all()[k].moves)
+          measure_pair(primitives_.all()[i], primitives_.all()[k]);
     }
   }
   void measure_pair(const PlacedPrimitive& one, const PlacedPrimitive& other) {
@@ -201,47 +149,6 @@ class LayerGapSearch {
     if (!(ratio < 1 + kSame) || (ratio > 1 - kSame && object >= layer_object_)) return;
     layer_object_ = object;
     spacing_.layer_distance = {distance, pointer_to_object(scene_, from.number)};
-  }
-
-  void place_all(double time) {
-    placed_.clear();
-    kernels_.clear();
-    moved_.clear();
-    int number = 0;
-    place(scene_.shapes, Affined{}, time, false, number);
-    for (const Instance& instance : scene_.instances) {
-      const Affined world = instance.world_from_model(time);
-      if (scaled_determinant(world) != 0)
-        place(scene_.models[instance.model].shapes, world, time, instance.motion.times.size() > 1, number);
-    }
-  }
-  void place(const std::vector<std::unique_ptr<ShapeSet>>& sets, const Affined& world, double time,
-             bool moves, int& number) {
-    for (const auto& shapes : sets) {
-      const int first = std::exchange(number, number + shapes->size());
-      const auto count = static_cast<int>(
-          std::min(static_cast<std::size_t>(shapes->size()), kMaxPrimitives - placed_.size()));
-      const bool whole = count == shapes->size();
-      complete_ = complete_ && whole;
-      if (count == 0 || (!whole && time > scene_.motion.first)) continue;
-      moved_.push_back(shapes->at(time));
-      const bool own_motion = moved_.back() != nullptr;
-      const ShapeSet& now = own_motion ? *moved_.back() : *shapes;
-      ShapeKernelPtr<double>& kernel = own_motion ? kernels_.emplace_back() : resting_[&now];
-      if (!kernel) kernel = now.kernel(double(), 0);
-      const Affined back = inverse(world);
-      for (int i = 0; i < count; ++i) {
-        const Boundsd own = now.bounds(i);
-        const Boundsd box = own.bounded() ? box_of(own, world) : Boundsd::everything();
-        placed_.push_back({moves || own_motion, scene_.object_run_of(first + i), &now, kernel.get(), i,
-                           first + i, world, back, box});
-      }
-    }
-  }
-  static Boundsd box_of(const Boundsd& own, const Affined& world) {
-    Boundsd box;
-    for (const Vec3d& corner : corners_of(own)) box.include(world.point(corner));
-    return box;
   }
 
   // Returns rays that may hit the primitive. Triangles: rays against the normal, at the middle and near the
@@ -298,7 +205,7 @@ class LayerGapSearch {
     }
     take_layer(from, at, 1);
     take_layer(from, at, -1);
-    if (complete_) look_for_mirrors(from, at, seen);
+    if (primitives_.complete()) look_for_mirrors(from, at, seen);
   }
 
   // Returns the shifts to two neighbouring points. On a triangle, the shifts follow two sides, so that the
@@ -328,11 +235,12 @@ class LayerGapSearch {
   void look_for_mirrors(const PlacedPrimitive& from, const std::array<SurfaceAt, 3>& at,
                         VisibleMirrors& seen) {
     const double radius = radius_at(at);
-    if (mirrored_share(from) == 0 || !(radius < std::numeric_limits<double>::infinity())) return;
+    if (primitives_.mirrored_share(from) == 0 || !(radius < std::numeric_limits<double>::infinity())) return;
     std::optional<std::size_t> other;
     const double distance =
         nearest(at[0], at[0].outward, [&](const PlacedPrimitive& placed, const SurfaceAt& met) {
-          if (placed.object == from.object || mirrored_share(placed) == 0 || !is_curved(placed, met))
+          if (placed.object == from.object || primitives_.mirrored_share(placed) == 0 ||
+              !is_curved(placed, met))
             return false;
           other = placed.object;
           return true;
@@ -349,7 +257,7 @@ class LayerGapSearch {
     const auto& [others, d, r] = seen;
     if (others.empty()) return;
     const double growth = 1 + 2 * d / r, met = std::sqrt(static_cast<double>(others.size())) * r / (d + r);
-    const double counted = mirrored_share(from) * growth * std::min(1.0, met);
+    const double counted = primitives_.mirrored_share(from) * growth * std::min(1.0, met);
     if (counted > spacing_.mirrors.growth)
       spacing_.mirrors = {counted, r, pointer_to_object(scene_, from.number)};
   }
@@ -371,19 +279,16 @@ class LayerGapSearch {
     }
     return false;
   }
-  double mirrored_share(const PlacedPrimitive& placed) const {
-    return shares_[static_cast<std::size_t>(scene_.material_of[static_cast<std::size_t>(placed.number)])];
-  }
-
   // Returns the distance to the nearest primitive along `along` for which is_such(primitive, surface) is
   // true, or infinity.
   template <class IsSuch>
   double nearest(const SurfaceAt& from, const Vec3d& along, const IsSuch& is_such) {
     const double least = kCoincident * magnitude_;
     const Ray<double> ray{from.position + along * least, along};
+    const BoxRay<double> box_ray(ray.origin, ray.direction);
     double distance = std::numeric_limits<double>::infinity();
-    for (const PlacedPrimitive& other : placed_) {
-      if (!may_meet(other.box, ray)) continue;
+    for (const PlacedPrimitive& other : primitives_.all()) {
+      if (!may_meet(other.box, box_ray)) continue;
       const auto met = probe_.meet(other, ray);
       if (met && met->distance > least && met->distance < distance && is_such(other, *met))
         distance = met->distance;
@@ -393,12 +298,8 @@ class LayerGapSearch {
 
   const Scene& scene_;
   const double magnitude_;
-  std::vector<std::unique_ptr<ShapeSet>> moved_;
-  std::deque<ShapeKernelPtr<double>> kernels_;                 // kernels of moving shapes
-  std::map<const ShapeSet*, ShapeKernelPtr<double>> resting_;  // kernels of resting shapes
-  std::vector<PlacedPrimitive> placed_;
-  bool complete_ = true;        // false if primitives were skipped: mirrors are not measured then
-  std::vector<double> shares_;  // mirrored share of each material
+  PlacedPrimitives primitives_;
+  MirrorPaths paths_;
   PrimitiveTester probe_;
   std::vector<VisibleMirrors> mirrors_;  // by object
   int layer_object_ = 0;                 // object of spacing_.layer_distance

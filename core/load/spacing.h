@@ -13,6 +13,7 @@ struct SurfaceGaps {
   LocatedValue layer_distance{std::numeric_limits<double>::infinity(), ""};
   // Curved mirror with the largest error growth toward other curved mirrors: see take_mirror().
   MirrorChain mirrors;
+  MirrorTurns turns;  // see MirrorPaths
 };
 
 // Measures the gaps. Throws Cancelled. REQUIRES: facts.magnitude is set.

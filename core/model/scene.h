@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <deque>
 #include <limits>
@@ -42,6 +43,19 @@ struct MirrorChain {
   std::string where;
 };
 
+// Assumed error of a hit / (machine epsilon times the largest coordinate).
+inline constexpr double kRoundingsOfHit = 8;
+
+// Turns of mirrored rays by the rounding errors of float.
+struct MirrorTurns {
+  static constexpr int kDepths = 32;
+  // Root mean square over camera rays, in radians, of the largest turn after at most 1, 2, ... reflections. A
+  // turn counts at most 1, times the reflected share of the light.
+  std::array<double, kDepths> after{};
+  double largest = 0;  // of one ray
+  std::string where;   // object with the largest turn
+};
+
 // Properties of the scene that the plan uses, computed once.
 struct SceneFacts {
   MaterialTraits materials;                                          // union over the materials in use
@@ -62,6 +76,7 @@ struct SceneFacts {
   LocatedValue smallest_feature{std::numeric_limits<double>::infinity(), ""},
       layer_distance{std::numeric_limits<double>::infinity(), ""};
   MirrorChain mirrors;
+  MirrorTurns turns;
   LocatedValue max_albedo{1, ""};  // largest albedo above 1 and an object with it; 1 if no albedo is above 1
   // As max_albedo, over materials with mirrored or transmitted rays, which ray trees follow too.
   LocatedValue max_followed_albedo{1, ""};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "core/model/technique.h"
@@ -10,9 +11,9 @@
 namespace orrery {
 namespace {
 
-constexpr double kRoundings = 8;      // assumed error of a hit / (epsilon x largest coordinate)
-constexpr double kMaxOfLength = 0.1;  // allowed error of a hit / smallest visible length
-constexpr double kMaxTurn = 0.02;     // allowed error of a mirrored ray's direction, radians
+constexpr double kMaxOfLength = 0.1;      // allowed error of a hit / smallest visible length
+constexpr double kMaxTurn = 0.02;         // allowed error of a mirrored ray's direction, radians
+constexpr double kMaxTurnOfPaths = 0.04;  // allowed MirrorTurns::after, radians
 // Minimum size of features in metres for float. The cube of a hundredth of this length is still a normal
 // float.
 constexpr double kMinLengthInFloat = 1e-10;
@@ -22,7 +23,11 @@ std::string metres(double x) { return number_text(x) + " m"; }
 class Limits {
  public:
   Limits(const Scene& scene, const Plan& plan)
-      : scene_(scene), facts_(scene.facts), plan_(plan), magnitude_(facts_.magnitude) {
+      : scene_(scene),
+        facts_(scene.facts),
+        plan_(plan),
+        measured_(std::max(scene.facts.magnitude.value, max_component(abs(scene.placement.eye)))),
+        magnitude_(facts_.magnitude) {
     const double eye = max_component(abs(plan.frame.eye));
     if (eye > magnitude_.value) magnitude_ = {eye, "/camera/eye"};
   }
@@ -38,6 +43,7 @@ class Limits {
     take_length(pixel, "a pixel is " + metres(pixel) + " wide at the nearest object");
     take_mirrors();
     take_mean_free_path();
+    take_turns();
     if (facts_.smallest_feature.value < kMinLengthInFloat)
       take({0, facts_.smallest_feature.where + " has features as small as " +
                    metres(facts_.smallest_feature.value) + ": products of such lengths underflow in float"});
@@ -49,7 +55,7 @@ class Limits {
     if (limit.epsilon < strictest_.epsilon) strictest_ = limit;
   }
   void take_length(double length, const std::string& what) {
-    take({kMaxOfLength * length / (kRoundings * magnitude_.value),
+    take({kMaxOfLength * length / (kRoundingsOfHit * magnitude_.value),
           what + ", with coordinates up to " + metres(magnitude_.value) + " (" + magnitude_.where + ")"});
   }
 
@@ -88,14 +94,27 @@ class Limits {
     const MirrorChain& chain = facts_.mirrors;
     if (chain.where.empty() || plan_.asked.max_depth.value_or(0) < 1) return;
     const double growth = std::pow(chain.growth, *plan_.asked.max_depth);
-    take({kMaxTurn * chain.radius / (kRoundings * magnitude_.value * growth),
+    take({kMaxTurn * chain.radius / (kRoundingsOfHit * magnitude_.value * growth),
           "each of " + std::to_string(*plan_.asked.max_depth) + " reflections from " + chain.where +
               " may multiply the rounding error by " + number_text(chain.growth)});
+  }
+
+  // Limits the turns that rounding errors of float cause along mirrored camera rays.
+  void take_turns() {
+    const int depth = std::min(plan_.asked.max_depth.value_or(0), MirrorTurns::kDepths);
+    if (depth < 1 || facts_.turns.largest == 0) return;
+    // The turns were measured with the eye of the scene, which may be nearer than that of the plan.
+    const double turn =
+        facts_.turns.after[static_cast<std::size_t>(depth - 1)] * std::max(1.0, magnitude_.value / measured_);
+    take({kMaxTurnOfPaths * double{std::numeric_limits<float>::epsilon()} / turn,
+          std::to_string(depth) + " reflections of mirrors such as " + facts_.turns.where +
+              " may turn rays by " + number_text(turn) + " radians in float (RMS)"});
   }
 
   const Scene& scene_;
   const SceneFacts& facts_;
   const Plan& plan_;
+  const double measured_;  // largest coordinate with the eye of the scene
   LocatedValue magnitude_;
   RoundingLimit strictest_;
 };
