@@ -64,18 +64,34 @@ bool pixels_are_alike(const SampledError& error) {
   return error.block32.values >= 3 * kMinTiles && tile * tile > most * pixel * pixel / kBatch;
 }
 
+// Bounds the sampling error if the radiance of a sample is unbounded.
+Certificate::Term unlimited_term(const SampledError& error, double doubt, bool reused) {
+  const char* const subject = Certificate::kSamples;
+  const double upper = error.upper_rmse(doubt, reused);
+  if (upper == 0)
+    return {subject, Bound::unknown(), "radiance of a sample is unbounded, and all samples of a pixel agree"};
+  if (!std::isfinite(upper))
+    return {subject, Bound::unknown(),
+            "radiance of a sample is unbounded, and the image has fewer than four " +
+                std::string(reused ? "tiles" : "blocks of 4x4 pixels")};
+  return {subject, Bound::estimated(upper),
+          "radiance of a sample is unbounded: the bound assumes that the samples found all bright light"};
+}
+
 // Bounds the sampling error. For means a and b of the halves, (a - b)^2 / 4 is on average at least the
 // squared error of their mean. No difference exceeds the range of a sample. In display values, bright samples
 // that only one half found are clipped. The clipping hides an error of about the radiance above display white
-// in that half. (A sample that is too dim to be clipped appears in the difference.)
+// in that half. (A sample that is too dim to be clipped appears in the difference.) If samples have no range,
+// no bound is valid for every distribution of the errors, and the spread of the errors over the image
+// replaces the range.
 Certificate::Term sampling_term(const Plan& plan, const RenderStats& stats, double doubt) {
   const char* const subject = Certificate::kSamples;
   if (!stats.error.known())
     return {subject, Bound::unknown(), "the error can be estimated only for an even number of samples"};
-  if (!stats.halves.known()) return {subject, Bound::unknown(), "radiance of a sample is unbounded"};
   const bool reused = plan.reuse > 1;
   if (!reused && pixels_are_alike(stats.error))
     return {subject, Bound::unknown(), "pixel errors within a tile are correlated"};
+  if (!stats.halves.known()) return unlimited_term(stats.error, doubt, reused);
   const double beyond = plan.beyond_range(stats.error.samples), part = beyond > 0 ? doubt / 2 : doubt;
   const double seen = plan.halves_range() * std::sqrt(stats.halves.upper_mean(part, reused)) / 2;
   if (beyond == 0) return {subject, Bound::estimated(seen)};

@@ -22,7 +22,7 @@ struct Certificate {
   struct Term {
     std::string subject;
     Bound bound;
-    std::string reason = {};  // why the bound is unknown
+    std::string reason = {};  // why the bound is unknown, or what an estimated bound assumes
   };
   std::vector<Term> terms;
   Space space = Space::linear;

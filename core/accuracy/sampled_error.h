@@ -26,6 +26,9 @@ struct SampledError {
   // Moments of the tiles' mean squares. Tiles are independent, while pixels within a tile may not be.
   double tiles = 0;
   Sum tile_sum = 0, tile_squares = 0;
+  // Moments of the sums of ((a - b) / 2)^2 over blocks of 4 x 4 pixels, also of blocks at the image border.
+  double blocks = 0;
+  Sum block_sum = 0, block_squares = 0;
 
   bool known() const { return pixel.values > 0; }
 
@@ -41,15 +44,22 @@ struct SampledError {
     tiles += other.tiles;
     tile_sum += other.tile_sum;
     tile_squares += other.tile_squares;
+    blocks += other.blocks;
+    block_sum += other.block_sum;
+    block_squares += other.block_squares;
   }
 
-  // Returns the estimate for `other_samples` samples per pixel, with mean squares `times` times as large.
-  SampledError scaled(int other_samples, double times) const {
+  // Returns the estimate for `other_samples` samples per pixel, with mean squares `times` times as large, and
+  // for `more` times as many blocks.
+  SampledError scaled(int other_samples, double times, double more = 1) const {
     SampledError all = *this;
     all.samples = other_samples;
     for (MeanSquare* sum : {&all.pixel, &all.block4, &all.block32}) sum->squares *= times;
     all.tile_sum *= times;
     all.tile_squares *= times * times;
+    all.blocks *= more;
+    all.block_sum *= more * times;
+    all.block_squares *= more * times * times;
     return all;
   }
 
@@ -65,10 +75,23 @@ struct SampledError {
   Interval interval() const {
     const double square = pixel.values > 0 ? pixel.squares / pixel.values : 0;
     if (tiles < 2) return {0, std::numeric_limits<double>::infinity()};
-    const double mean = tile_sum / tiles;
-    const double spread = std::max(0.0, tile_squares / tiles - mean * mean) * tiles / (tiles - 1);
-    const double off = 1.96 * std::sqrt(spread / tiles);
+    const double off = 1.96 * standard_error(tiles, tile_sum, tile_squares);
     return {std::sqrt(std::max(0.0, square - off)), std::sqrt(square + off)};
+  }
+
+  // Returns an estimated upper bound of the expected RMSE over pixels, valid with probability 1 - doubt if
+  // the mean over blocks of 4 x 4 pixels is normally distributed. The bound is the upper end of a Student's t
+  // interval over blocks, or over tiles if only tiles are independent. The spread between blocks includes
+  // differences of the image content, so the interval tends to be too wide. Light that no sample found is not
+  // included. Returns infinity for fewer than 4 independent units, and 0 if all halves are equal.
+  double upper_rmse(double doubt, bool tiles_alone_are_independent) const;
+
+ private:
+  // Returns the standard error of the mean of `count` independent values with these moments. REQUIRES: count
+  // is at least 2.
+  static double standard_error(double count, double sum, double squares) {
+    const double mean = sum / count;
+    return std::sqrt(std::max(0.0, squares / count - mean * mean) / (count - 1));
   }
 };
 

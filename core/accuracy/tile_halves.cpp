@@ -44,21 +44,25 @@ SampledError TileHalves::error() const {
   SampledError told;
   told.samples = samples;
   Four squares(0.0);
+  std::array<Four, kBatch / kBlock4> of_blocks{};
   for (std::size_t c = 0; c < 3; ++c) {
     double sum_of_tile = 0;
     for (std::size_t block = 0; block < kBatch; block += kBlock4) {
-      Four differences(0.0), counted(0.0);
+      Four differences(0.0), counted(0.0), of_block(0.0);
       for (std::size_t i = block; i < block + kBlock4; i += Four::size()) {
         Four half_difference = (2.0 * four(first[c], i) - four(all[c], i)) * share;
         Four counts = four(is_inside, i);
         stdx::where(!(abs(half_difference) <= std::numeric_limits<double>::max()), counts) = 0.0;
         stdx::where(counts == 0.0, half_difference) = 0.0;
         squares += half_difference * half_difference;
+        of_block += half_difference * half_difference;
         differences += half_difference;
         counted += counts;
       }
       const double sum = sum_of(differences), values = sum_of(counted);
       told.pixel.values += values;
+      of_blocks[block / kBlock4] += of_block;
+      if (c == 0 && values > 0) told.blocks += 1;
       sum_of_tile += sum;
       if (values < kBlock4) continue;
       told.block4.squares += sum * sum / (kBlock4 * kBlock4);
@@ -74,6 +78,11 @@ SampledError TileHalves::error() const {
   told.tiles = 1;
   told.tile_sum = mean_square;
   told.tile_squares = mean_square * mean_square;
+  for (const Four& of_block : of_blocks) {
+    const double sum = sum_of(of_block);
+    told.block_sum += sum;
+    told.block_squares += sum * sum;
+  }
   return told;
 }
 

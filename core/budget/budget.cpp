@@ -59,7 +59,7 @@ class BudgetedRender {
 
   RenderResult render() {
     made_.certificate = certify(*made_.plan, made_.stats, alpha_of_look(1));  // no samples yet
-    if (fails_on_miss() && error_ > 0 && !is_provable()) throw BudgetMissed(outcome(), made_.certificate);
+    if (fails_on_miss() && error_ > 0 && !is_reachable()) throw BudgetMissed(outcome(), made_.certificate);
     choose_contribution();
     while (!render_passes()) {  // a pass found omitted light that the pilots missed
       made_.plan = made_.plan.with_min_contribution(made_.plan->min_contribution / kStepOfPass);
@@ -276,27 +276,38 @@ class BudgetedRender {
                 .rms;
   }
 
-  bool is_proved() const { return made_.certificate.total().rms && *made_.certificate.total().rms <= error_; }
+  // Returns whether the bound of the image meets the error limit.
+  bool is_bound_met() const {
+    const auto bound = made_.certificate.total().rms;
+    return bound && *bound <= error_;
+  }
 
   // Returns false if the image has fewer samples than the request sets. With a time limit, fewer are allowed.
   bool has_samples_asked() const {
     return made_.plan->free_samples || seconds_ > 0 || made_.samples == made_.plan->samples;
   }
 
-  bool is_provable() const { return least() && *least() <= error_; }
+  // Returns whether some number of samples may meet the error limit. If the radiance of a sample is
+  // unbounded, no error is provable, and the bound that the samples estimate has no lower limit.
+  bool is_reachable() const {
+    if (!made_.certificate.min_provable) return rest() && *rest() <= error_;
+    return least() && *least() <= error_;
+  }
 
   // Returns whether more samples are not worth their cost. This requires an estimated error of at most the
   // error limit less the other known errors, or half of the limit if that is larger. In addition, one of
   // these conditions must be met: the bound meets the error limit, or is at most kNearLeast times the
-  // smallest provable error, or there is no bound. A smaller error limit never leads to fewer samples.
+  // smallest provable error, or there is no bound. If no error is provable, but there is a bound, that bound
+  // must meet the limit. A smaller error limit never leads to fewer samples.
   bool is_near_enough() const {
     const SampledError& error = made_.stats.error;
     if (!error.known()) return false;
+    const auto& bound = made_.certificate.total().rms;
+    if (bound && !made_.certificate.min_provable) return is_bound_met();
     const double estimate = made_.certificate.min_provable ? *made_.certificate.estimate
                             : error.tiles < 2              ? error.pixel.rmse()
                                                            : error.interval().high;
     if (estimate > std::max(error_ - rest_known(), error_ / 2)) return false;
-    const auto& bound = made_.certificate.total().rms;
     return !bound || *bound <= std::max(error_, kNearLeast * *least());
   }
 
@@ -307,13 +318,13 @@ class BudgetedRender {
   }
 
   // Returns whether a miss is an error and no number of samples can avoid it.
-  bool is_hopeless() const { return fails_on_miss() && !is_provable(); }
+  bool is_hopeless() const { return fails_on_miss() && !is_reachable(); }
 
   bool is_too_coarse() const {
     if (error_ == 0 || !made_.plan->free_contribution || refinements_ == kMaxRefinements) return false;
     const double first_pass_s = pass_s_per_sample_ * progressive_samples(*made_.plan).front();
     if (seconds_ > 0 && used_s() + kSlower * first_pass_s > deadline_s()) return false;
-    return !is_proved() && share_of_cuts(made_.certificate) > kShareOfCuts * error_ &&
+    return !is_bound_met() && share_of_cuts(made_.certificate) > kShareOfCuts * error_ &&
            !are_too_deep(made_.stats);
   }
 
@@ -353,6 +364,7 @@ class BudgetedRender {
     outcome.error = error_;
     outcome.seconds = seconds_;
     outcome.on_miss = *made_.plan->asked.on_miss;
+    outcome.kind = made_.certificate.total().kind;
     outcome.min_error = least();
     Plan used = *made_.plan;
     used.asked.samples = made_.samples;
@@ -363,22 +375,21 @@ class BudgetedRender {
     outcome.used_s = used_s();
     if (min_s_ > 0) outcome.min_s = min_s_;
     outcome.seconds_met = seconds_ == 0 || (outcome.used_s <= seconds_ && !is_late_);
-    outcome.error_met = error_ == 0 || (is_proved() && has_samples_asked());
+    outcome.error_met = error_ == 0 || (is_bound_met() && has_samples_asked());
     if (!outcome.met()) outcome.reason = reason();
     return outcome;
   }
 
   std::string reason() const {
-    if (is_proved() && !has_samples_asked()) return reason_;
-    if (is_late_ || error_ == 0 || is_proved()) return late_reason();
+    if (is_bound_met() && !has_samples_asked()) return reason_;
+    if (is_late_ || error_ == 0 || is_bound_met()) return late_reason();
     for (const Certificate::Term& term : made_.certificate.terms)
       if (term.bound.kind == Bound::Kind::unknown && (made_.samples > 0 || is_not_sampling(term)))
         return term.subject + ": " + term.reason;
-    if (!made_.certificate.min_provable) return "samples: radiance of a sample is unbounded";
     if (*rest() > error_) return "errors other than sampling noise may reach " + rounded(*rest());
-    if (!is_provable()) return "smallest provable error at this size: " + rounded(*least());
+    if (!is_reachable()) return "smallest provable error at this size: " + rounded(*least());
     if (!reason_.empty()) return reason_;
-    const bool near = *made_.certificate.total().rms <= kNearLeast * *least();
+    const bool near = least() && *made_.certificate.total().rms <= kNearLeast * *least();
     return near ? "more samples hardly reduce the provable error (smallest: " + rounded(*least()) + ")"
                 : "sample limit reached";
   }

@@ -12,10 +12,12 @@ namespace orrery {
 //    the error probability kAlpha: pass k gets 2^-k of it. If min_contribution is free, pilots choose it so
 //    that untraced rays cause at most 1/16 of the error limit. If a pass shows that they cause more than 1/8,
 //    min_contribution is divided by 16 and the passes start again, at most three times.
-//  - Unprovable error limit: if no bound can be proved, e.g. because the radiance of a sample is unbounded,
-//    passes continue until the estimated error is within the limit. If the smallest provable error exceeds
-//    the limit, passes also continue until the bound is at most 1.25 times that error. Both cases count as
-//    missed. If `on_miss` is `fail`, no pass starts.
+//  - Unbounded radiance: if a sample has no largest radiance, as for paths in linear radiance, the bound that
+//    the samples estimate from the spread of their errors must meet the limit. It assumes that the samples
+//    found all bright light.
+//  - Unprovable error limit: if there is no bound, passes continue until the estimated error is within the
+//    limit. If the smallest provable error exceeds the limit, passes also continue until the bound is at most
+//    1.25 times that error. Both cases count as missed. If `on_miss` is `fail`, no pass starts.
 //  - Time limit: a pass starts only if it would end in time at 1.1 times the cost per sample of the previous
 //    pass. The last pass may have any even number of samples. A pass that exceeds the time limit is
 //    abandoned, and the image of the previous pass is returned. The first pass is abandoned only if `on_miss`

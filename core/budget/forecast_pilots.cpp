@@ -67,7 +67,7 @@ RenderStats ForecastPilots::extrapolated(int samples) const {
     return stats;
   }
   const double times = std::pow(double(samples_) / samples, exponent_);
-  stats.error = stats.error.scaled(samples, times);
+  stats.error = stats.error.scaled(samples, times, 1 / last_.share);
   stats.halves = stats.halves.scaled(1 / last_.share, times);
   return stats;
 }

@@ -29,10 +29,11 @@ struct BudgetOutcome {
   OnMiss on_miss = OnMiss::best;
   RenderSettings settings;  // a request with them renders the same image without a budget
   bool error_met = true, seconds_met = true;
-  double used_s = 0;                     // seconds used, see RenderControl::used_s
-  std::optional<double> min_error = {};  // smallest provable error at this image size
-  std::optional<double> min_s = {};      // predicted end of an abandoned first pass, seconds
-  std::string reason;                    // why the budget was missed; empty if it was met
+  double used_s = 0;                        // seconds used, see RenderControl::used_s
+  Bound::Kind kind = Bound::Kind::unknown;  // kind of the bound that was compared with the error limit
+  std::optional<double> min_error = {};     // smallest provable error at this image size
+  std::optional<double> min_s = {};         // predicted end of an abandoned first pass, seconds
+  std::string reason;                       // why the budget was missed; empty if it was met
 
   bool met() const { return error_met && seconds_met; }
   // Sets used_s to the time at the end of encoding. If that exceeds the time limit, the limit counts as

@@ -126,10 +126,12 @@ class Planner {
     require_picture(asked, "a budget");
     plan_.free_samples = !request_.samples;
     plan_.free_contribution = *asked.error > 0 && !request_.min_contribution && !plan_.technique->draws_light;
+    const bool unlimited = plan_.space == Space::linear && plan_.technique->draws_light;
     if (*asked.error > 0)
       decide("error", "at most " + number_text(*asked.error) + " RMS",
              "as specified, in " + std::string(name_of(plan_.space)) +
-                 " values; samples are added until the certificate meets this limit");
+                 " values; samples are added until the certificate meets this limit" +
+                 (unlimited ? ", with an estimated bound, because radiance is unbounded" : ""));
     if (*asked.seconds > 0) decide("seconds", "at most " + seconds(*asked.seconds), "as specified");
     if (plan_.free_samples)
       decide("samples", "at most " + std::to_string(plan_.samples), "chosen by the budget");

@@ -119,7 +119,9 @@ std::string bound_text(const Certificate& certificate) {
 
 ordered_json budget_json(const BudgetOutcome& outcome) {
   ordered_json json = {{"met", outcome.met()}};
-  if (outcome.error > 0) json.update({{"error", outcome.error}, {"error_met", outcome.error_met}});
+  if (outcome.error > 0)
+    json.update(
+        {{"error", outcome.error}, {"error_met", outcome.error_met}, {"kind", name_of(outcome.kind)}});
   if (outcome.seconds > 0) json.update({{"seconds", outcome.seconds}, {"seconds_met", outcome.seconds_met}});
   json["used_s"] = outcome.used_s;
   if (outcome.error > 0) json["reachable_error"] = number_or_null(outcome.min_error);
@@ -131,7 +133,8 @@ ordered_json budget_json(const BudgetOutcome& outcome) {
 std::string budget_text(const BudgetOutcome& outcome) {
   std::string text = outcome.met() ? "met=?1" : "met=?0";
   if (outcome.error > 0)
-    text += ";error=" + number_or_unknown(outcome.error) + ";error-met=?" + (outcome.error_met ? "1" : "0");
+    text += ";error=" + number_or_unknown(outcome.error) + ";error-met=?" + (outcome.error_met ? "1" : "0") +
+            ";kind=" + std::string(name_of(outcome.kind));
   if (outcome.seconds > 0)
     text += ";seconds=" + number_or_unknown(outcome.seconds) + ";seconds-met=?" +
             (outcome.seconds_met ? "1" : "0") + ";used=" + number_or_unknown(outcome.used_s);

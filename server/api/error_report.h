@@ -23,8 +23,9 @@ nlohmann::ordered_json bound_json(const Bound& bound);
 
 // Returns {"reference", "space", "confidence", "terms": [{"subject", "bound", "reason"}], "total", "known",
 // "light", "estimate", "least_provable", "biases": [{"option", "value", "mean", "standard_error"}]}. "reason"
-// explains an unknown bound. "estimate", "least_provable" and "biases" are present if known. "light" is the
-// total bound, or an unknown bound with "because" if the technique ignores some kinds of light.
+// explains an unknown bound, or names the assumption of an estimated bound. "estimate", "least_provable" and
+// "biases" are present if known. "light" is the total bound, or an unknown bound with "because" if the
+// technique ignores some kinds of light.
 nlohmann::ordered_json certificate_json(const Certificate& certificate);
 
 // Returns the total bound as a header value:
@@ -33,13 +34,15 @@ nlohmann::ordered_json certificate_json(const Certificate& certificate);
 // known-max are then the bound of the known terms.
 std::string bound_text(const Certificate& certificate);
 
-// Returns {"met", "error", "error_met", "seconds", "seconds_met", "used_s", "reachable_error",
+// Returns {"met", "error", "error_met", "kind", "seconds", "seconds_met", "used_s", "reachable_error",
 // "least_seconds", "reason"}. The members for "error" and "seconds" are present if that limit was requested.
+// "kind" is the kind of the bound that was compared with the error limit.
 // "reachable_error" is the smallest provable error, or null if no error is provable. "least_seconds" is the
 // predicted time of the first pass, if it was cancelled as too slow. "reason" explains a miss.
 nlohmann::ordered_json budget_json(const BudgetOutcome& outcome);
 
-// Returns the outcome as a header value: "met=?0;error=0.001;reason=\"...\"" or "met=?1;seconds=2;used=1.83".
+// Returns the outcome as a header value:
+// "met=?0;error=0.001;error-met=?0;kind=estimated;reason=\"...\"" or "met=?1;seconds=2;used=1.83".
 std::string budget_text(const BudgetOutcome& outcome);
 
 // Returns the mean and standard error of each bias, for R, G and B, as a header value:

@@ -264,7 +264,8 @@ constexpr std::array kResults{
                .refinement_frame = false,
                .orbit_frame = false,
                .job_step = false},
-        .description = "Result of a budget: met, error, error-met, seconds, seconds-met, used and, for a "
+        .description = "Result of a budget: met, error, error-met, kind (of the bound that was compared with "
+                       "the error), seconds, seconds-met, used and, for a "
                        "missed budget, reason",
         .header = "Orrery-Budget",
         .text = budget_of,

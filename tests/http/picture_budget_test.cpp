@@ -32,6 +32,17 @@ TEST_F(PictureBudget, ReturnsCacheableImageForErrorBudget) {
   EXPECT_TRUE(get("error=0.2&seed=1")->body != first->body);
 }
 
+// Radiance of paths has no upper limit, so the bound is estimated, and the response says so.
+TEST_F(PictureBudget, ReportsKindOfEstimatedBound) {
+  const auto made = get("error=0.2&technique=path&error_metric=linear&width=96&height=96");
+  ASSERT_EQ(made->status, 200) << made->body.substr(0, 400);
+  EXPECT_TRUE(has(made, "Orrery-Budget", "met=?1;error=0.2;error-met=?1;kind=estimated"))
+      << made->get_header_value("Orrery-Budget");
+  EXPECT_TRUE(has(made, "Orrery-Error-Bound", ";kind=estimated;max=unknown;confidence=0.95;estimate="))
+      << made->get_header_value("Orrery-Error-Bound");
+  EXPECT_TRUE(has(made, "Orrery-Error-Bound", "space=linear"));
+}
+
 TEST_F(PictureBudget, ReproducesImageFromContentLocation) {
   for (const char* query : {"error=0.2", "seconds=0.2", "seconds=0.05&technique=path", "error=0.5&depth=2",
                             "error=0.3&pan=0.1,0,0&azimuth=20"}) {
