@@ -6,8 +6,8 @@ namespace orrery {
 
 double SampledError::upper_rmse(double doubt, bool tiles_alone_are_independent) const {
   constexpr double kMinUnits = 4;
-  // Fraction of `doubt` at which t is taken. Squares of errors are skewed, so few samples show too little of
-  // their spread: if one block in fifty errs, a t interval holds for 90 % of 1,024 blocks instead of 95 %.
+  // Fraction of `doubt` at which t is taken. Squares of errors are skewed, so their sampled spread is too
+  // small. With errors in one block of fifty, a t interval over 1,024 blocks covers 90 % instead of 95 %.
   constexpr double kSkewed = 0.25;
   const double units = tiles_alone_are_independent ? tiles : blocks;
   if (pixel.squares == 0) return 0;

@@ -7,7 +7,8 @@
 namespace orrery {
 namespace {
 
-constexpr std::size_t kMaxPlanes = 8;  // of OccupiedSpace; each untraced ray is compared with them
+constexpr std::size_t kMaxPlanes =
+    8;  // limit of OccupiedSpace::planes, with which each untraced ray is compared
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 // Multiplies component by component; 0 times infinity is 0.
@@ -33,7 +34,7 @@ struct MaterialExtent {
     const ShapeSet* shapes;
     int index;
   };
-  Boundsd box;                  // of the bounded primitives
+  Boundsd box;                  // box of the bounded primitives
   std::vector<Unbounded> rest;  // the others
   bool anywhere = false;        // may be at any place
 

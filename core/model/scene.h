@@ -52,7 +52,7 @@ struct MirrorTurns {
   // Root mean square over camera rays, in radians, of the largest turn after at most 1, 2, ... reflections. A
   // turn counts at most 1, times the reflected share of the light.
   std::array<double, kDepths> after{};
-  double largest = 0;  // of one ray
+  double largest = 0;  // largest turn of one ray
   std::string where;   // object with the largest turn
 };
 
@@ -64,7 +64,7 @@ struct SceneFacts {
   bool unbounded = false;                                            // some primitive is unbounded
   bool smooth = false;                                               // some mesh has vertex normals
   RadianceRange tree_radiance, distributed_radiance, path_radiance;  // one per kind of technique
-  RadianceRange sky_radiance;  // of rays that miss everything, without lights at infinity
+  RadianceRange sky_radiance;  // radiance of rays that miss everything, without lights at infinity
   OccupiedSpace occupied;
   Vec3d albedo;  // bound on the albedos of used materials
   // The members below, except max_albedo, are inputs to the choice of the number type.
