@@ -1,204 +1,213 @@
 #include "core/raster/screen.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/base/parallel.h"
 #include "core/cameras/pixel_filter.h"
 #include "core/model/technique.h"
 #include "core/model/tile.h"
+#include "core/raster/projector.h"
 #include "core/raster/tessellate.h"
 
 namespace orrery {
 namespace {
 
-constexpr std::size_t kChunk = 16'384;  // triangles that one task projects
-// Triangles are clipped to this distance from the edges of the image, in pixels, so that edge functions stay
-// below 2^53.
-constexpr double kGuard = 4096;
-
-// Vertex in camera coordinates: to the right, up and ahead, in metres.
-struct CameraVertex {
-  Vec3d at;
-  std::int32_t x = 0, y = 0;  // subpixels
-  bool in_guard = false;
-};
-
-// Corner of a clipped polygon, and the weights of the corners of its triangle.
-struct ClippedCorner {
-  Vec3d at, weights;
-};
-
-// Range of the sample positions of a pixel: TileSamples::u and v.
-struct SampleRange {
-  double lo, hi;
-};
 SampleRange sample_range(const Plan& plan) {
-  if (plan.samples == 1) return {0.5, 0.5};
+  if (plan.samples == 1) return {kSubpixels / 2, kSubpixels / 2};
   const double half =
       plan.filtered ? double{PixelFilter(*plan.asked.filter, *plan.asked.filter_width).half_width()} : 0.5;
-  return {0.5 - half - 1.0 / kSubpixels, 0.5 + half};  // samples are rounded down to subpixels
+  return {static_cast<int>(std::floor((0.5 - half) * kSubpixels)) - 1,  // samples are rounded down
+          static_cast<int>(std::ceil((0.5 + half) * kSubpixels))};
 }
 
-// Pixels or tiles from lo to hi.
+// Pixels from lo to hi.
 struct Span {
   int lo, hi;
+  int size() const { return hi - lo + 1; }
+  Span within(int size) const { return {std::max(lo, 0), std::min(hi, size - 1)}; }
 };
 
-class Projector {
+// Elements of tiles in ascending order of numbers.
+template <class X>
+struct Unsorted {
+  std::vector<X> elements;
+  std::vector<std::uint32_t> tiles;
+
+  void add(std::uint32_t tile, const X& element) {
+    elements.push_back(element);
+    tiles.push_back(tile);
+  }
+  // Counting sort.
+  void sort(ByTile<X>& sorted) const {
+    if (tiles.empty()) return;
+    const auto [least, most] = std::minmax_element(tiles.begin(), tiles.end());
+    sorted.first_tile = *least;
+    sorted.first.assign(*most - *least + 2, 0);
+    for (const std::uint32_t tile : tiles) ++sorted.first[tile - *least + 1];
+    for (std::size_t i = 1; i < sorted.first.size(); ++i) sorted.first[i] += sorted.first[i - 1];
+    sorted.elements.resize(elements.size());
+    std::vector<std::uint32_t> next(sorted.first.begin(), sorted.first.end() - 1);
+    for (std::size_t i = 0; i < tiles.size(); ++i) sorted.elements[next[tiles[i] - *least]++] = elements[i];
+  }
+};
+
+// Returns the batch element of a pixel in its tile.
+std::uint16_t slot_of(int x, int y) {
+  const int column = x % kTileSide, row = y % kTileSide;
+  const int block = row / 4 * (kTileSide / 4) + column / 4;
+  return static_cast<std::uint16_t>(block * 16 + row % 4 * 4 + column % 4);
+}
+
+// Finds the tiles and the samples that the triangles of a chunk cover.
+class ChunkBuilder {
  public:
-  explicit Projector(const Plan& plan)
-      : frame_(plan.frame),
-        parallel_(plan.camera->parallel()),
-        width_(plan.width),
-        height_(plan.height),
-        scale_(plan.height / (2 * plan.frame.half_extent)),
-        samples_(sample_range(plan)) {}
+  ChunkBuilder(const Screen& screen, const Projector& projector, const Plan& plan, SampleRange samples)
+      : screen_(screen), projector_(projector), width_(plan.width), height_(plan.height), samples_(samples) {}
 
-  CameraVertex vertex(const Vec3d& position) const {
-    const Vec3d from_eye = position - frame_.eye;
-    CameraVertex vertex{{dot(from_eye, frame_.right), dot(from_eye, frame_.up), -dot(from_eye, frame_.back)}};
-    bool inside = vertex.at.z > 0;
-    for (int side = 0; side < 4; ++side) inside = inside && beyond_guard(vertex.at, side) >= 0;
-    vertex.in_guard = inside;
-    if (inside) place(vertex.at, vertex.x, vertex.y);
-    return vertex;
-  }
-
-  // Adds the part of the triangle that is inside the guard region.
-  void add(const std::array<const CameraVertex*, 3>& corners, std::uint32_t number,
-           Screen::Chunk& chunk) const {
-    if (outside_image(corners)) return;
-    if (corners[0]->in_guard && corners[1]->in_guard && corners[2]->in_guard) {
-      ScreenTriangle triangle;
-      triangle.triangle = number;
-      for (std::size_t i = 0; i < 3; ++i) {
-        triangle.x[i] = corners[i]->x;
-        triangle.y[i] = corners[i]->y;
-        triangle.nearness[i] = nearness(corners[i]->at);
-      }
-      if (covers_samples(triangle)) chunk.triangles.push_back(triangle);
-      return;
+  void build(std::size_t number, Screen::Chunk& chunk) {
+    triangles_.elements.clear();
+    triangles_.tiles.clear();
+    fragments_.elements.clear();
+    fragments_.tiles.clear();
+    const std::size_t begin = number * Screen::kChunk;
+    const std::size_t end = std::min(begin + Screen::kChunk, screen_.surfaces.triangles.size());
+    find_candidates(begin, end);
+    for (std::size_t i = 0; i < candidates_; ++i) {
+      const std::uint32_t triangle = candidate_[i];
+      if (is_beyond_guard(triangle))
+        add_clipped(triangle, chunk);
+      else
+        add(screen_.triangle(triangle * Screen::kParts), triangle * Screen::kParts);
     }
-    std::vector<ClippedCorner> polygon{
-        {corners[0]->at, {1, 0, 0}}, {corners[1]->at, {0, 1, 0}}, {corners[2]->at, {0, 0, 1}}};
-    for (int side = 0; side < 5; ++side) polygon = clipped(polygon, side);
-    for (std::size_t i = 2; i < polygon.size(); ++i)
-      add_clipped({polygon[0], polygon[i - 1], polygon[i]}, number, chunk);
-  }
-
-  // Sorts the triangles of the chunk by tile.
-  void sort(Screen::Chunk& chunk) const {
-    const TileGrid grid(width_, height_);
-    chunk.first.assign(static_cast<std::size_t>(grid.size()) + 1, 0);
-    for (const ScreenTriangle& triangle : chunk.triangles)
-      for_each_tile(triangle, [&](std::size_t tile) { ++chunk.first[tile + 1]; });
-    for (std::size_t tile = 1; tile < chunk.first.size(); ++tile) chunk.first[tile] += chunk.first[tile - 1];
-    chunk.list.resize(chunk.first.back());
-    std::vector<std::uint32_t> next(chunk.first.begin(), chunk.first.end() - 1);
-    for (std::uint32_t i = 0; i < chunk.triangles.size(); ++i)
-      for_each_tile(chunk.triangles[i], [&](std::size_t tile) { chunk.list[next[tile]++] = i; });
+    triangles_.sort(chunk.triangles);
+    fragments_.sort(chunk.fragments);
   }
 
  private:
-  // Returns the distance of a point, in pixels at depth 1, to the inside of a side of the guard region.
-  // Sides: left, right, top, bottom, and the plane of the eye.
-  double beyond_guard(const Vec3d& at, int side) const {
-    if (side == 4) return at.z;
-    const double half = (side < 2 ? width_ : height_) / 2.0 + kGuard, depth = parallel_ ? 1 : at.z;
-    const double along = (side < 2 ? at.x : at.y) * scale_;
-    return half * depth + (side % 2 == 0 ? along : -along);
-  }
-
-  // Returns whether the corners are all beyond one side of the image, or behind the eye.
-  bool outside_image(const std::array<const CameraVertex*, 3>& corners) const {
-    const double right = width_ / 2.0 + reach(), top = height_ / 2.0 + reach();
-    bool left_of = true, right_of = true, above = true, below = true, behind = true;
-    for (const CameraVertex* corner : corners) {
-      const Vec3d& at = corner->at;
-      const double x = at.x * scale_, y = at.y * scale_, depth = parallel_ ? 1 : at.z;
-      left_of = left_of && x < -right * depth;
-      right_of = right_of && x > right * depth;
-      below = below && y < -top * depth;
-      above = above && y > top * depth;
-      behind = behind && at.z <= 0;
-    }
-    return left_of || right_of || above || below || behind;
-  }
-  double reach() const { return samples_.hi; }  // largest distance of samples from the image, pixels
-
-  // Sutherland, Hodgman, "Reentrant polygon clipping" (1974). New corners are computed from the inner to the
-  // outer end of an edge, so that triangles that share the edge get equal corners.
-  std::vector<ClippedCorner> clipped(const std::vector<ClippedCorner>& polygon, int side) const {
-    std::vector<ClippedCorner> inside;
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-      const ClippedCorner &from = polygon[i], &to = polygon[(i + 1) % polygon.size()];
-      const double a = beyond_guard(from.at, side), b = beyond_guard(to.at, side);
-      if (a >= 0) inside.push_back(from);
-      if ((a >= 0) == (b >= 0)) continue;
-      const ClippedCorner &in = a >= 0 ? from : to, &out = a >= 0 ? to : from;
-      const double share = a >= 0 ? a / (a - b) : b / (b - a);
-      inside.push_back({in.at + (out.at - in.at) * share, in.weights + (out.weights - in.weights) * share});
-    }
-    return inside;
-  }
-
-  void add_clipped(const std::array<ClippedCorner, 3>& corners, std::uint32_t number,
-                   Screen::Chunk& chunk) const {
-    ScreenTriangle triangle;
-    triangle.triangle = number;
-    triangle.clipped = static_cast<std::int32_t>(chunk.corners.size());
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (!parallel_ && !(corners[i].at.z > 0)) return;  // the triangle touches the eye
-      place(corners[i].at, triangle.x[i], triangle.y[i]);
-      triangle.nearness[i] = nearness(corners[i].at);
-    }
-    if (!covers_samples(triangle)) return;
-    chunk.triangles.push_back(triangle);
-    chunk.corners.push_back({corners[0].weights, corners[1].weights, corners[2].weights});
-  }
-
-  void place(const Vec3d& at, std::int32_t& x, std::int32_t& y) const {
-    const double scale = parallel_ ? scale_ : scale_ / at.z;
-    x = static_cast<std::int32_t>(std::nearbyint((at.x * scale + width_ / 2.0) * kSubpixels));
-    y = static_cast<std::int32_t>(std::nearbyint((height_ / 2.0 - at.y * scale) * kSubpixels));
-  }
-  double nearness(const Vec3d& at) const { return parallel_ ? -at.z : 1 / at.z; }
+  // Triangles that cover at most this many pixels as boxes are stored as fragments.
+  static constexpr int kSmall = 8;
 
   // Returns the pixels whose samples may be between two coordinates in subpixels.
-  Span pixels(const std::array<std::int32_t, 3>& at, int size) const {
-    const auto [lo, hi] = std::minmax({at[0], at[1], at[2]});
-    return {std::max(0, static_cast<int>(std::ceil(double(lo) / kSubpixels - samples_.hi))),
-            std::min(size - 1, static_cast<int>(std::floor(double(hi) / kSubpixels - samples_.lo)))};
+  Span pixels(std::int32_t a, std::int32_t b, std::int32_t c) const {
+    const std::int32_t lo = std::min(std::min(a, b), c), hi = std::max(std::max(a, b), c);
+    return {(lo - samples_.hi + kSubpixels - 1) >> kShift, (hi - samples_.lo) >> kShift};
   }
-  bool covers_samples(const ScreenTriangle& triangle) const {
-    const Span across = pixels(triangle.x, width_), down = pixels(triangle.y, height_);
-    if (across.lo > across.hi || down.lo > down.hi) return false;
-    const auto& [x, y] = std::pair(triangle.x, triangle.y);
-    return std::int64_t{x[1] - x[0]} * (y[2] - y[0]) != std::int64_t{x[2] - x[0]} * (y[1] - y[0]);
-  }
-  template <class Visit>
-  void for_each_tile(const ScreenTriangle& triangle, const Visit& visit) const {
-    const Span across = pixels(triangle.x, width_), down = pixels(triangle.y, height_);
-    const int tiles_across = (width_ + kTileSide - 1) / kTileSide;
-    for (int row = down.lo / kTileSide; row <= down.hi / kTileSide; ++row)
-      for (int column = across.lo / kTileSide; column <= across.hi / kTileSide; ++column)
-        visit(static_cast<std::size_t>(row * tiles_across + column));
+  static constexpr int kShift = 10;
+  static_assert(1 << kShift == kSubpixels);
+
+  // Finds triangles whose boxes contain samples, and triangles to be clipped.
+  void find_candidates(std::size_t begin, std::size_t end) {
+    candidates_ = 0;
+    const Tessellation::Triangle* const triangles = screen_.surfaces.triangles.data();
+    const ScreenVertex* const vertices = screen_.vertices.get();
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto& [a, b, c] = triangles[i].vertices;
+      const ScreenVertex &p = vertices[a], &q = vertices[b], &r = vertices[c];
+      const Span across = pixels(p.x, q.x, r.x), down = pixels(p.y, q.y, r.y);
+      const bool beyond =
+          (p.x == ScreenVertex::kBeyond) | (q.x == ScreenVertex::kBeyond) | (r.x == ScreenVertex::kBeyond);
+      const bool covers = (across.lo <= across.hi) & (across.lo < width_) & (across.hi >= 0) &
+                          (down.lo <= down.hi) & (down.lo < height_) & (down.hi >= 0);
+      candidate_[candidates_] = static_cast<std::uint32_t>(i);
+      candidates_ += beyond | covers;
+    }
   }
 
-  const CameraFrame& frame_;
-  bool parallel_;
+  bool is_beyond_guard(std::uint32_t triangle) const {
+    const auto& [a, b, c] = screen_.surfaces.triangles[triangle].vertices;
+    return screen_.vertices[a].x == ScreenVertex::kBeyond || screen_.vertices[b].x == ScreenVertex::kBeyond ||
+           screen_.vertices[c].x == ScreenVertex::kBeyond;
+  }
+
+  void add_clipped(std::uint32_t triangle, Screen::Chunk& chunk) {
+    std::array<Vec3d, 3> positions;
+    for (std::size_t i = 0; i < 3; ++i)
+      positions[i] = screen_.surfaces.vertices[screen_.surfaces.triangles[triangle].vertices[i]].position;
+    Screen::Number number = triangle * Screen::kParts;
+    projector_.clip(positions, [&](const ScreenTriangle& part, const Screen::Corners& corners) {
+      chunk.clipped.push_back({++number, part, corners});
+      add(part, number);
+    });
+  }
+
+  void add(const ScreenTriangle& triangle, Screen::Number number) {
+    const auto& [x, y] = std::pair(triangle.x, triangle.y);
+    const Span across = pixels(x[0], x[1], x[2]), down = pixels(y[0], y[1], y[2]);
+    const Span columns = across.within(width_), rows = down.within(height_);
+    if (screen_.centred && across.size() <= kSmall && down.size() <= kSmall &&
+        across.size() * down.size() <= kSmall)
+      return add_fragments(triangle, number, columns, rows);
+    if (std::int64_t{x[1] - x[0]} * (y[2] - y[0]) == std::int64_t{x[2] - x[0]} * (y[1] - y[0])) return;
+    if (columns.size() <= 0 || rows.size() <= 0) return;
+    for (int row = rows.lo / kTileSide; row <= rows.hi / kTileSide; ++row)
+      for (int column = columns.lo / kTileSide; column <= columns.hi / kTileSide; ++column)
+        triangles_.add(static_cast<std::uint32_t>(row * screen_.tiles_across + column), number);
+  }
+
+  void add_fragments(const ScreenTriangle& triangle, Screen::Number number, const Span& columns,
+                     const Span& rows);
+
+  const Screen& screen_;
+  const Projector& projector_;
   int width_, height_;
-  double scale_;  // pixels per metre, at depth 1 m unless parallel
   SampleRange samples_;
+  std::array<std::uint32_t, Screen::kChunk> candidate_;
+  std::size_t candidates_ = 0;
+  Unsorted<Screen::Number> triangles_;
+  Unsorted<Screen::Fragment> fragments_;
 };
 
+// Computes the numbers of TileRaster::draw(), which are exact or are rounded in the same order. All edge
+// functions of small triangles fit in 32 bits.
+void ChunkBuilder::add_fragments(const ScreenTriangle& triangle, Screen::Number number, const Span& columns,
+                                 const Span& rows) {
+  const auto& [x, y] = std::pair(triangle.x, triangle.y);
+  const int area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
+  if (area == 0) return;
+  const int side = area < 0 ? -1 : 1;
+  const int left = columns.lo * kSubpixels + kSubpixels / 2, top = rows.lo * kSubpixels + kSubpixels / 2;
+  std::array<int, 3> a, b, at_row;  // edge functions at the first pixel of a row, less the least value inside
+  std::array<double, 3> near;
+  std::array<int, 3> least;
+  const double inverse = 1.0 / (area * side);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t from = (i + 1) % 3, to = (i + 2) % 3;
+    const int dx = (x[to] - x[from]) * side, dy = (y[to] - y[from]) * side;
+    a[i] = -dy * kSubpixels;
+    b[i] = dx * kSubpixels;
+    least[i] = dy < 0 || (dy == 0 && dx > 0) ? 0 : 1;
+    at_row[i] = dx * (top - y[from]) - dy * (left - x[from]);
+    near[i] = triangle.nearness[i] * inverse;
+  }
+  for (int row = rows.lo; row <= rows.hi; ++row) {
+    std::array<int, 3> e = at_row;
+    for (int column = columns.lo; column <= columns.hi; ++column) {
+      if (((e[0] - least[0]) | (e[1] - least[1]) | (e[2] - least[2])) >= 0)
+        fragments_.add(
+            static_cast<std::uint32_t>(row / kTileSide * screen_.tiles_across + column / kTileSide),
+            {e[0] * near[0] + e[1] * near[1] + e[2] * near[2], number, slot_of(column, row)});
+      for (std::size_t i = 0; i < 3; ++i) e[i] += a[i];
+    }
+    for (std::size_t i = 0; i < 3; ++i) at_row[i] += b[i];
+  }
+}
+
 }  // namespace
+
+const Screen::ClippedPart& Screen::clipped(Number number) const {
+  const auto& parts = chunks[number / kParts / kChunk].clipped;
+  return *std::lower_bound(parts.begin(), parts.end(), number,
+                           [](const ClippedPart& part, Number n) { return part.number < n; });
+}
 
 std::size_t Screen::bytes() const {
   const auto size = [](const auto& list) { return list.size() * sizeof list[0]; };
   std::size_t sum = size(surfaces.vertices) + size(surfaces.triangles);
+  sum += surfaces.vertices.size() * sizeof vertices[0];
   for (const Chunk& chunk : chunks)
-    sum += size(chunk.triangles) + size(chunk.corners) + size(chunk.first) + size(chunk.list);
+    sum += size(chunk.clipped) + size(chunk.triangles.elements) + size(chunk.triangles.first) +
+           size(chunk.fragments.elements) + size(chunk.fragments.first);
   return sum;
 }
 
@@ -206,21 +215,21 @@ std::shared_ptr<const Screen> make_screen(const Scene& scene, const Plan& plan) 
   auto screen = std::make_shared<Screen>();
   screen->surfaces = tessellate(scene, plan, kMaxScreenTriangles);
   screen->parallel = plan.camera->parallel();
+  screen->centred = plan.samples == 1;
   screen->tiles_across = (plan.width + kTileSide - 1) / kTileSide;
   const Tessellation& surfaces = screen->surfaces;
-  const Projector projector(plan);
-  std::vector<CameraVertex> vertices(surfaces.vertices.size());
-  parallel_for_each(vertices.size(), kChunk,
-                    [&](std::size_t i) { vertices[i] = projector.vertex(surfaces.vertices[i].position); });
+  const SampleRange samples = sample_range(plan);
+  const Projector projector(plan, samples);
+  constexpr std::size_t kChunk = Screen::kChunk;
+  const std::size_t vertices = surfaces.vertices.size();
+  screen->vertices = std::make_unique_for_overwrite<ScreenVertex[]>(vertices);
+  parallel_for_each((vertices + kChunk - 1) / kChunk, 1, [&](std::size_t c) {
+    const std::size_t begin = c * kChunk, count = std::min(kChunk, vertices - begin);
+    projector.project({&surfaces.vertices[begin], count}, &screen->vertices[begin]);
+  });
   screen->chunks.resize((surfaces.triangles.size() + kChunk - 1) / kChunk);
   parallel_for_each(screen->chunks.size(), 1, [&](std::size_t c) {
-    Screen::Chunk& chunk = screen->chunks[c];
-    const std::size_t end = std::min((c + 1) * kChunk, surfaces.triangles.size());
-    for (std::size_t i = c * kChunk; i < end; ++i) {
-      const auto& [a, b, d] = surfaces.triangles[i].vertices;
-      projector.add({&vertices[a], &vertices[b], &vertices[d]}, static_cast<std::uint32_t>(i), chunk);
-    }
-    projector.sort(chunk);
+    ChunkBuilder(*screen, projector, plan, samples).build(c, screen->chunks[c]);
   });
   return screen;
 }

@@ -1,15 +1,15 @@
 #include "core/raster/tile_raster.h"
 
+#include <algorithm>
 #include <cmath>
 #include <tuple>
 
-#include "core/base/prefetch.h"
 #include "core/base/task_scope.h"
 
 namespace orrery {
 namespace {
 
-constexpr std::uint32_t kAhead = 8;  // triangles that are prefetched
+constexpr std::size_t kAhead = 8;  // triangles that are prefetched
 
 }  // namespace
 
@@ -31,7 +31,7 @@ TileRaster::Edges TileRaster::edges_of(const ScreenTriangle& triangle) const {
 }
 
 template <bool peels>
-[[gnu::flatten]] void TileRaster::draw(const ScreenTriangle& triangle, std::int64_t number) {
+[[gnu::flatten]] void TileRaster::draw(const ScreenTriangle& triangle, Screen::Number number) {
   const Edges edges = edges_of(triangle);
   const auto pixels = [&](const std::array<std::int32_t, 3>& at, int corner, int size) {
     const auto [lo, hi] = std::minmax({at[0], at[1], at[2]});
@@ -58,33 +58,48 @@ template <bool peels>
         auto seen = e0 >= edges.least[0] && e1 >= edges.least[1] && e2 >= edges.least[2] &&
                     nearness > nearness_.at(i);
         if constexpr (peels) {
-          const auto later = IndexLanes<double>(number) > load_index<double>(limit_number_, i);
+          const auto later = IndexLanes<double>(std::int64_t{number}) > load_index<double>(limit_number_, i);
           seen = seen && (nearness < limit_.at(i) || (nearness == limit_.at(i) && mask_cast<N>(later)));
         }
         if (none_of(seen)) continue;
         nearness_.put(i, seen, nearness);
-        nearest_.put(i, mask_cast<IndexLanes<double>>(seen), IndexLanes<double>(number));
+        nearest_.put(i, mask_cast<IndexLanes<double>>(seen), IndexLanes<double>(std::int64_t{number}));
       }
+}
+
+template <bool peels>
+void TileRaster::draw(const Screen::Fragment& fragment) {
+  const int slot = fragment.slot;
+  const double nearness = fragment.nearness;
+  const std::int64_t number = fragment.number;
+  if (nearness < nearness_[slot] || (nearness == nearness_[slot] && number > nearest_[slot])) return;
+  if constexpr (peels)
+    if (nearness > limit_[slot] || (nearness == limit_[slot] && number <= limit_number_[slot])) return;
+  nearness_[slot] = nearness;
+  nearest_[slot] = number;
 }
 
 template <bool peels>
 void TileRaster::draw_triangles() {
   const int across = tile_.x0 / kTileSide, down = tile_.y0 / kTileSide;
-  const auto number = static_cast<std::size_t>(down * screen_.tiles_across + across);
-  for (std::size_t c = 0; c < screen_.chunks.size(); ++c) {
-    const Screen::Chunk& chunk = screen_.chunks[c];
+  const auto tile = static_cast<std::uint32_t>(down * screen_.tiles_across + across);
+  const auto& triangles = screen_.surfaces.triangles;
+  for (const Screen::Chunk& chunk : screen_.chunks) {
     checkpoint();
-    const std::uint32_t end = chunk.first[number + 1];
-    for (std::uint32_t i = chunk.first[number]; i < end; ++i) {
-      prefetch_lines(chunk.triangles[chunk.list[std::min(i + kAhead, end - 1)]]);
-      draw<peels>(chunk.triangles[chunk.list[i]], static_cast<std::int64_t>(c << 32 | chunk.list[i]));
+    const std::span<const Screen::Number> numbers = chunk.triangles.of(tile);
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      __builtin_prefetch(&triangles[numbers[std::min(i + 2 * kAhead, numbers.size() - 1)] / Screen::kParts]);
+      const Screen::Number later = numbers[std::min(i + kAhead, numbers.size() - 1)];
+      for (const std::uint32_t vertex : triangles[later / Screen::kParts].vertices)
+        __builtin_prefetch(&screen_.vertices[vertex]);
+      draw<peels>(screen_.triangle(numbers[i]), numbers[i]);
     }
+    for (const Screen::Fragment& fragment : chunk.fragments.of(tile)) draw<peels>(fragment);
   }
 }
 
 void TileRaster::draw(const TileView& tile, const TileSamples& samples) {
   tile_ = tile;
-  known_ = -1;
   reach_ = 0;
   for (int slot = 0; slot < kBatch; ++slot) {
     const auto place = [&](int pixel, float within) {
@@ -111,19 +126,38 @@ void TileRaster::peel(const std::array<bool, kBatch>& wanted) {
   draw_triangles<true>();
 }
 
-Vec3d TileRaster::weights(int slot) {
-  const ScreenTriangle& triangle = found(slot);
-  if (known_ != nearest_[slot]) edges_ = edges_of(triangle);
-  known_ = nearest_[slot];
-  Vec3d weights;
-  for (std::size_t i = 0; i < 3; ++i)
-    weights[i] = edges_.a[i] * x_[slot] + edges_.b[i] * y_[slot] + edges_.c[i];
-  if (perspective_ && !screen_.parallel)
-    for (std::size_t i = 0; i < 3; ++i) weights[i] *= triangle.nearness[i];
+Facets::Weights TileRaster::weights(const std::array<int, Facets::kLanes>& slots) const {
+  std::array<ScreenTriangle, Facets::kLanes> triangles;
+  for (std::size_t lane = 0; lane < triangles.size(); ++lane)
+    triangles[lane] = screen_.triangle(number(slots[lane]));
+  std::array<N, 3> x, y;  // subpixels from the corner of the tile
+  Vec3<N> near;
+  for (std::size_t k = 0; k < 3; ++k) {
+    x[k] = N([&](auto lane) { return double(triangles[lane].x[k] - tile_.x0 * kSubpixels); });
+    y[k] = N([&](auto lane) { return double(triangles[lane].y[k] - tile_.y0 * kSubpixels); });
+    near[k] = N([&](auto lane) { return triangles[lane].nearness[k]; });
+  }
+  const N at_x([&](auto lane) { return x_[slots[lane]]; }), at_y([&](auto lane) { return y_[slots[lane]]; });
+  const N area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
+  const N side = select(area < N(0), N(-1), N(1));
+  Vec3<N> weights;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t from = (k + 1) % 3, to = (k + 2) % 3;
+    const N dx = (x[to] - x[from]) * side, dy = (y[to] - y[from]) * side;
+    weights[k] = dx * (at_y - y[from]) - dy * (at_x - x[from]);  // exact
+  }
+  if (perspective_ && !screen_.parallel) weights = weights * near;
   weights = weights / (weights.x + weights.y + weights.z);
-  if (triangle.clipped < 0) return weights;
-  const Screen::Corners& corners = chunk_of(slot).corners[static_cast<std::size_t>(triangle.clipped)];
-  return corners[0] * weights.x + corners[1] * weights.y + corners[2] * weights.z;
+  for (std::size_t lane = 0; lane < triangles.size(); ++lane) {
+    if (number(slots[lane]) % Screen::kParts == 0) continue;
+    const Screen::Corners& corners = screen_.clipped(number(slots[lane])).corners;
+    const Vec3d whole = corners[0] * double(weights.x[lane]) + corners[1] * double(weights.y[lane]) +
+                        corners[2] * double(weights.z[lane]);
+    weights.x[lane] = whole.x;
+    weights.y[lane] = whole.y;
+    weights.z[lane] = whole.z;
+  }
+  return weights;
 }
 
 }  // namespace orrery

@@ -2,7 +2,7 @@
 
 #include "core/model/batch.h"
 #include "core/model/tile.h"
-#include "core/raster/screen.h"
+#include "core/raster/facets.h"
 
 namespace orrery {
 
@@ -24,9 +24,10 @@ class TileRaster {
 
   bool covered(int slot) const { return nearest_[slot] >= 0; }
   // Returns the number in Tessellation::triangles of the triangle at a sample. REQUIRES: covered(slot).
-  std::uint32_t triangle(int slot) const { return found(slot).triangle; }
-  // Returns the weights of its corners at the sample, whose sum is 1 up to rounding. REQUIRES: covered(slot).
-  Vec3d weights(int slot);
+  std::uint32_t triangle(int slot) const { return number(slot) / Screen::kParts; }
+  // Returns the weights of the corners of triangle(slot) at samples, whose sum is 1 up to rounding. REQUIRES:
+  // the samples are covered.
+  Facets::Weights weights(const std::array<int, Facets::kLanes>& slots) const;
 
  private:
   using N = Lanes<double>;
@@ -42,13 +43,10 @@ class TileRaster {
   template <bool peels>
   void draw_triangles();
   template <bool peels>
-  void draw(const ScreenTriangle& triangle, std::int64_t number);
-  const ScreenTriangle& found(int slot) const {
-    return chunk_of(slot).triangles[static_cast<std::uint32_t>(nearest_[slot])];
-  }
-  const Screen::Chunk& chunk_of(int slot) const {
-    return screen_.chunks[static_cast<std::size_t>(nearest_[slot] >> 32)];
-  }
+  void draw(const ScreenTriangle& triangle, Screen::Number number);
+  template <bool peels>
+  void draw(const Screen::Fragment& fragment);
+  Screen::Number number(int slot) const { return static_cast<Screen::Number>(nearest_[slot]); }
 
   const Screen& screen_;
   const bool perspective_;
@@ -56,13 +54,11 @@ class TileRaster {
   Array<double> x_, y_;  // samples, in subpixels from the corner of the tile
   double reach_ = 0;     // largest distance of a sample from the centre of its pixel, subpixels
   Array<double> nearness_;
-  Array<std::int64_t> nearest_;  // chunk * 2^32 + triangle of the chunk, or -1
+  Array<std::int64_t> nearest_;  // Screen::Number, or -1
   // While peeling: nearness_ and nearest_ of the previous layer, or -infinity for samples that are not
   // wanted.
   Array<double> limit_;
   Array<std::int64_t> limit_number_;
-  Edges edges_{};            // edges of triangle `known_`
-  std::int64_t known_ = -1;  // as in nearest_
 };
 
 }  // namespace orrery

@@ -4,9 +4,25 @@
 
 #include "core/lighting/specular.h"
 #include "core/lighting/surfaces.h"
-#include "core/math/face_normal.h"
+#include "core/math/lane_vectors.h"
 
 namespace orrery {
+namespace {
+
+// Elements from i on, as fewer lanes than a register of T has.
+template <class Narrow, class T>
+[[gnu::always_inline]] inline Vec3<Narrow> loaded(const Vec3Array<T>& from, int i) {
+  const auto load = [&](const Array<T>& values) { return Narrow(&values[i], stdx::vector_aligned); };
+  return {load(from.x), load(from.y), load(from.z)};
+}
+template <class Narrow, class T>
+[[gnu::always_inline]] inline void store(int i, Vec3Array<T>& to, const Vec3<Narrow>& v) {
+  to.x.put(i, v.x);
+  to.y.put(i, v.y);
+  to.z.put(i, v.z);
+}
+
+}  // namespace
 
 template <class T>
 ScanLine<T>::ScanLine(const World<T>& world, const Plan& plan, ShadingPoints points)
@@ -51,13 +67,18 @@ LaneGroups ScanLine<T>::find_vertices(const LaneGroups& groups) {
   const bool needs_surfaces = shading_ == ShadingPoints::pixels || !this->plan_.channels.empty() ||
                               this->atmosphere_ || has_straight_;
   reset(v.paths->rays, groups, v.hits);
-  for (const int i : groups)
-    for (int lane = i; lane < i + kWidth<T>; ++lane) {
-      const int slot = slot_of(lane);
-      if (!(v.paths->rays.t_max[lane] > 0) || !raster_.covered(slot)) continue;
-      use_facet(raster_.triangle(slot));
-      v.hits.primitive[lane] = facet_.primitive;
-      if (needs_surfaces) put_surface(lane, raster_.weights(slot), v.paths->rays[lane]);
+  for (const int group : groups)
+    for (int i = group; i < group + kWidth<T>; i += kLanes) {
+      const Part part = part_at(i);
+      if (part.empty) continue;
+      Facets::Numbers triangles;
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        triangles[lane] = raster_.triangle(part.slots[lane]);
+        if (part.met[lane])
+          v.hits.primitive[i + static_cast<int>(lane)] =
+              screen_.surfaces.triangles[triangles[lane]].primitive;
+      }
+      if (needs_surfaces) put_surfaces(i, facets_of(triangles), raster_.weights(part.slots), part.met);
     }
   const LaneGroups met = start_surfaces(this->geometry_, groups, v.hits, v.surface, v.radiance);
   if (needs_surfaces) add_fields(this->geometry_, this->plan_.fields, *v.paths, met, v.hits, v.surface);
@@ -68,23 +89,46 @@ template <class T>
 void ScanLine<T>::shade_surfaces(const LaneGroups& met) {
   if (shading_ == ShadingPoints::pixels) return SpecularTree<T>::shade_surfaces(met);
   auto& v = *this->vertices_;
-  for (const int i : met)
-    for (int lane = i; lane < i + kWidth<T>; ++lane) {
-      if (v.hits.primitive[lane] == kNoPrimitive) continue;
-      const int slot = slot_of(lane);
-      const Point* const points = &points_[static_cast<std::size_t>(point_of_[slot])];
-      if (shading_ == ShadingPoints::triangles) {
-        v.radiance.set(lane, points[0].radiance);
-      } else {
-        const Vec3<T> weights(raster_.weights(slot));
-        v.radiance.set(lane, points[0].radiance * weights.x + points[1].radiance * weights.y +
-                                 points[2].radiance * weights.z);
-      }
-    }
+  for (const int group : met)
+    for (int i = group; i < group + kWidth<T>; i += kLanes)
+      if (const Part part = part_at(i); !part.empty) interpolate(i, part);
   if (!has_straight_) return;
   const LaneGroups straight = groups_with(this->geometry_, v.surface, met, &MaterialTraits::straight);
   evaluate_specular(this->geometry_, false, v.hits, v.surface, straight, *v.paths, this->specular_);
   for (const int i : straight) follow_straight(i);
+}
+
+template <class T>
+void ScanLine<T>::interpolate(int i, const Part& part) {
+  const bool constant = shading_ == ShadingPoints::triangles;
+  const Facets::Weights weights = constant ? Facets::Weights() : raster_.weights(part.slots);
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    if (!part.met[lane]) continue;
+    const Point* const points = &points_[static_cast<std::size_t>(point_of_[part.slots[lane]])];
+    Vec3<T> radiance = points[0].radiance;
+    if (!constant)
+      radiance = points[0].radiance * static_cast<T>(weights.x[lane]) +
+                 points[1].radiance * static_cast<T>(weights.y[lane]) +
+                 points[2].radiance * static_cast<T>(weights.z[lane]);
+    this->vertices_->radiance.set(i + static_cast<int>(lane), radiance);
+  }
+}
+
+template <class T>
+typename ScanLine<T>::Part ScanLine<T>::part_at(int i) const {
+  const PathBatch<T>& paths = *this->vertices_->paths;
+  Part part;
+  int some = 0;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    const int ray = i + static_cast<int>(lane);
+    if (!(paths.rays.t_max[ray] > 0) || !raster_.covered(slot_of(ray))) continue;
+    part.met[lane] = true;
+    part.slots[lane] = some = slot_of(ray);
+    part.empty = false;
+  }
+  for (std::size_t lane = 0; lane < kLanes; ++lane)
+    if (!part.met[lane]) part.slots[lane] = some;
+  return part;
 }
 
 template <class T>
@@ -120,9 +164,9 @@ void ScanLine<T>::shade_points() {
     if (points_.empty() || points_.back().triangle != triangle) {
       first = static_cast<std::int32_t>(points_.size());
       if (shading_ == ShadingPoints::triangles)
-        points_.push_back({triangle, Weights(1.0 / 3), {}});
+        points_.push_back({triangle, Vec3d(1.0 / 3), {}});
       else
-        for (const Weights& corner : {Weights(1, 0, 0), Weights(0, 1, 0), Weights(0, 0, 1)})
+        for (const Vec3d& corner : {Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d(0, 0, 1)})
           points_.push_back({triangle, corner, {}});
     }
     point_of_[static_cast<int>(sample % kBatch)] = first;
@@ -142,15 +186,30 @@ void ScanLine<T>::shade_batch(std::size_t first, std::size_t last) {
   reset(paths.rays, groups, v.hits);
   const PixelFootprint pixel = pixel_footprint(this->plan_.frame, *this->plan_.camera, this->plan_.height);
   for (int i = 0; i < paths.rays.count; ++i) {
-    const Point& point = points_[first + static_cast<std::size_t>(i)];
-    use_facet(point.triangle);
-    const Ray<T> ray = ray_to(point.weights);
-    paths.rays.set(i, ray, std::numeric_limits<T>::infinity());
+    paths.rays.t_max[i] = std::numeric_limits<T>::infinity();
     paths.throughput.set(i, Vec3<T>(T(1)));
     paths.slot[i] = 0;
     paths.width[i] = static_cast<T>(pixel.width);
     paths.spread[i] = static_cast<T>(pixel.spread);
-    put_surface(i, point.weights, ray);
+  }
+  for (int i = 0; i < paths.rays.count; i += kLanes) {
+    Facets::Numbers triangles;
+    std::array<const Point*, kLanes> points;
+    std::array<bool, kLanes> met;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::size_t point = first + static_cast<std::size_t>(i) + lane;
+      met[lane] = point < last;
+      points[lane] = &points_[std::min(point, last - 1)];
+      triangles[lane] = points[lane]->triangle;
+      if (met[lane])
+        v.hits.primitive[i + static_cast<int>(lane)] = screen_.surfaces.triangles[triangles[lane]].primitive;
+    }
+    Facets::Weights weights;
+    for (std::size_t k = 0; k < 3; ++k)
+      weights[k] = Facets::N([&](auto lane) { return points[lane]->weights[k]; });
+    const Facets facets = facets_of(triangles);
+    put_rays(i, facets, weights);
+    put_surfaces(i, facets, weights, met);
   }
   const LaneGroups met = start_surfaces(this->geometry_, groups, v.hits, v.surface, v.radiance);
   add_fields(this->geometry_, this->plan_.fields, paths, met, v.hits, v.surface);
@@ -160,55 +219,36 @@ void ScanLine<T>::shade_batch(std::size_t first, std::size_t last) {
 }
 
 template <class T>
-void ScanLine<T>::use_facet(std::uint32_t number) {
-  if (facet_.triangle == number) return;
-  const Tessellation& surfaces = screen_.surfaces;
-  const Tessellation::Triangle& triangle = surfaces.triangles[number];
-  facet_.triangle = number;
-  facet_.primitive = triangle.primitive;
-  for (std::size_t k = 0; k < 3; ++k) facet_.positions[k] = surfaces.vertices[triangle.vertices[k]].position;
-  const auto& [a, b, c] = facet_.positions;
-  bool smooth = shading_ != ShadingPoints::triangles;
-  for (std::size_t k = 0; k < 3; ++k) {
-    facet_.normals[k] = surfaces.vertices[triangle.vertices[k]].normal;
-    smooth = smooth && facet_.normals[k] != Vec3d();
-  }
-  facet_.face = smooth ? safe_normalize(cross(b - a, c - a)) : face_normal(a, b, c);
-  if (!smooth) facet_.normals.fill(facet_.face);
-  const CameraFrame& frame = this->plan_.frame;
-  facet_.side = dot(facet_.face, screen_.parallel ? -frame.back : a - frame.eye) > 0 ? -1 : 1;
-}
-
-template <class T>
-void ScanLine<T>::put_surface(int i, const Weights& weights, const Ray<T>& ray) {
+void ScanLine<T>::put_surfaces(int i, const Facets& facets, const Facets::Weights& weights,
+                               const std::array<bool, kLanes>& met) {
   auto& [paths, hits, surface, radiance] = *this->vertices_;
-  const auto mix = [&](const std::array<Vec3d, 3>& at) {
-    return at[0] * weights.x + at[1] * weights.y + at[2] * weights.z;
-  };
-  const Vec3d sum = mix(facet_.normals);
-  const double size = length(sum);
-  const Vec3d normal = size > 0.001 ? sum / size : facet_.face;  // otherwise the normals nearly cancel
-  const Vec3<T> at(mix(facet_.positions));
-  surface.position.set(i, at);
+  using D = Facets::N;
+  const auto narrow = [](const Vec3<D>& v) { return convert_vector<Narrow>(v); };
+  const Vec3<Narrow> at = narrow(facets.position(weights)),
+                     direction = loaded<Narrow>(paths->rays.direction, i);
+  store(i, surface.position, at);
   // Gouraud and Phong evaluate the interpolated normal only. The facing of the flat triangle has no effect,
   // unless the interpolated normal faces away from the viewer.
-  const Vec3d seen = normal * facet_.side;
-  const bool faces_viewer = dot(seen, Vec3d(ray.direction)) < 0;
-  surface.geometric.set(i, Vec3<T>(faces_viewer ? seen : facet_.face * facet_.side));
-  surface.normal.set(i, Vec3<T>(seen));
-  surface.side[i] = static_cast<T>(facet_.side);
-  surface.step[i] = 0;  // no ray starts at the surface
-  hits.t[i] = dot(at - ray.origin, ray.direction);
-  hits.primitive[i] = facet_.primitive;
+  const Vec3<D> seen = facets.normal(weights) * facets.side;
+  const auto faces_viewer = dot(seen, convert_vector<D>(direction)) < D(0);
+  store(i, surface.geometric, narrow(select(faces_viewer, seen, facets.face * facets.side)));
+  store(i, surface.normal, narrow(seen));
+  surface.side.put(i, stdx::static_simd_cast<Narrow>(facets.side));
+  surface.step.put(i, Narrow(T(0)));  // no ray starts at the surface
+  const Narrow t = dot(at - loaded<Narrow>(paths->rays.origin, i), direction);
+  for (std::size_t lane = 0; lane < kLanes; ++lane)
+    if (met[lane]) hits.t[i + static_cast<int>(lane)] = t[lane];
 }
 
 template <class T>
-Ray<T> ScanLine<T>::ray_to(const Weights& weights) const {
+void ScanLine<T>::put_rays(int i, const Facets& facets, const Facets::Weights& weights) {
+  using D = Facets::N;
   const CameraFrame& frame = this->plan_.frame;
-  const auto& [a, b, c] = facet_.positions;
-  const Vec3d from_eye = a * weights.x + b * weights.y + c * weights.z - frame.eye;
-  if (!screen_.parallel) return {Vec3<T>(frame.eye), Vec3<T>(safe_normalize(from_eye))};
-  return {Vec3<T>(frame.eye + from_eye + frame.back * -dot(from_eye, frame.back)), Vec3<T>(-frame.back)};
+  const Vec3<D> eye(frame.eye), back(frame.back), from_eye = facets.position(weights) - eye;
+  RayBatch<T>& rays = this->vertices_->paths->rays;
+  store(i, rays.origin,
+        convert_vector<Narrow>(screen_.parallel ? eye + from_eye + back * D(-dot(from_eye, back)) : eye));
+  store(i, rays.direction, convert_vector<Narrow>(screen_.parallel ? -back : safe_normalize(from_eye)));
 }
 
 template class ScanLine<float>;

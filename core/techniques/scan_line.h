@@ -24,7 +24,15 @@ class ScanLine : public SpecularTree<T> {
 
  private:
   using N = Lanes<T>;
-  using Weights = Vec3d;  // one for each corner of a triangle
+  static constexpr int kLanes = Facets::kLanes;
+  using Narrow = stdx::rebind_simd_t<T, Facets::N>;  // kLanes numbers
+  // Rays of a part of a register.
+  struct Part {
+    std::array<bool, kLanes> met{};
+    std::array<int, kLanes>
+        slots{};  // samples of these rays. The others have the sample of one of these rays
+    bool empty = true;
+  };
 
   void begin() final;
   LaneGroups find_vertices(const LaneGroups& groups) final;
@@ -40,29 +48,28 @@ class ScanLine : public SpecularTree<T> {
     const PathBatch<T>& paths = *this->vertices_->paths;
     return paths.depth == 0 ? lane : static_cast<int>(paths.slot[lane]);
   }
+  // Sets the radiance of rays `i` to `i` + kLanes - 1, if the colours of points are interpolated.
+  void interpolate(int i, const Part& part);
   // Finds the distinct visible triangles of the tile, and evaluates light at their shading points.
   void shade_points();
   // Evaluates light at points_[first] to points_[last - 1].
   void shade_batch(std::size_t first, std::size_t last);
-  // Sets hit and surface of element i of the current batch: the point of facet_ with these weights.
-  void put_surface(int i, const Weights& weights, const Ray<T>& ray);
-  // Returns the ray of the camera to the point of facet_ with these weights.
-  Ray<T> ray_to(const Weights& weights) const;
-  // Sets facet_.
-  void use_facet(std::uint32_t triangle);
+  // Returns which of the rays `i` to `i` + kLanes - 1 of the current batch meet a triangle.
+  Part part_at(int i) const;
+  Facets facets_of(const Facets::Numbers& triangles) const {
+    return {screen_, this->plan_.frame, triangles, shading_ != ShadingPoints::triangles};
+  }
+  // Sets hits and surfaces of elements `i` to `i` + kLanes - 1 of the current batch: the points of the facets
+  // with these weights. Sets t only where `met` is true.
+  void put_surfaces(int i, const Facets& facets, const Facets::Weights& weights,
+                    const std::array<bool, kLanes>& met);
+  // Sets these elements of the rays of the current batch to rays of the camera to the points.
+  void put_rays(int i, const Facets& facets, const Facets::Weights& weights);
 
   struct Point {
     std::uint32_t triangle;
-    Weights weights;
+    Vec3d weights;
     Vec3<T> radiance;
-  };
-  // Triangle with data that all of its points share.
-  struct Facet {
-    std::uint32_t triangle = std::numeric_limits<std::uint32_t>::max();
-    std::int32_t primitive;
-    std::array<Vec3d, 3> positions, normals;
-    Vec3d face;   // outward unit normal of the triangle
-    double side;  // SurfaceBatch::side
   };
 
   const Screen& screen_;
@@ -72,7 +79,6 @@ class ScanLine : public SpecularTree<T> {
   int layer_ = 0;  // depth of the rays for which raster_ has the triangles
   const TileView* tile_ = nullptr;
   const TileSamples* samples_ = nullptr;
-  Facet facet_;
   std::vector<std::uint64_t> visible_;  // triangle * kBatch + slot of each covered sample, ascending
   std::vector<Point> points_;           // one or three for each visible triangle
   Array<std::int32_t> point_of_;        // by slot: index in points_ of the first point of its triangle
