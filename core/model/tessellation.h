@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "core/math/angles.h"
@@ -41,8 +42,17 @@ struct Tessellation {
     std::array<std::uint32_t, 3> vertices;  // anticlockwise as seen from outside
     std::int32_t primitive;
   };
+  // Triangles that are used where a set of shapes stores them. They follow `before` of `triangles`.
+  struct Mesh {
+    std::span<const Vec3d> positions, normals;  // one normal for each position, or none
+    std::span<const std::array<std::uint32_t, 3>> triangles;
+    std::int32_t first_primitive;
+    std::size_t before;
+  };
   std::vector<Vertex> vertices;
   std::vector<Triangle> triangles;
+  std::vector<Mesh> meshes;
+  bool may_refer = false;  // whether sets may add to `meshes`, because they outlive this object
   double error = 0;  // largest distance of a triangle from its surface, pixels
 
   std::uint32_t add(const Vec3d& position, const Vec3d& normal = {}) {
@@ -84,6 +94,13 @@ struct Tessellation {
     const double angle = std::numbers::pi / count;
     error = std::max(error, radius * angle * angle / (2 * share * pixel));
     return count;
+  }
+
+  // Returns the number of triangles, those of meshes included.
+  std::size_t size() const {
+    std::size_t sum = triangles.size();
+    for (const Mesh& mesh : meshes) sum += mesh.triangles.size();
+    return sum;
   }
 
   static constexpr int kMaxSides = 1024;

@@ -32,7 +32,7 @@ World<T> rasterized_world(PreparedScene::Parts& parts, const Plan& plan, double&
                        : lighting_for<T>(parts, *plan.accelerator, build_ms, stop);
   const auto start = Clock::now();
   const TaskScope scope({TaskScope::current().memory, &stop});
-  world.screen = make_screen(*parts.scene, plan);
+  world.screen = make_screen(parts.scene, plan);
   build_ms += milliseconds_since(start);
   return world;
 }

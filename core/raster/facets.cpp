@@ -5,23 +5,26 @@
 namespace orrery {
 
 Facets::Facets(const Screen& screen, const CameraFrame& frame, const Numbers& triangles, bool smooth) {
-  std::array<std::array<const Tessellation::Vertex*, kLanes>, 3> corners;
+  std::array<std::array<const Vec3d*, kLanes>, 3> position_of, normal_of;
+  static constexpr Vec3d kNone;
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    const auto& vertices = screen.surfaces.triangles[triangles[lane]].vertices;
-    for (std::size_t k = 0; k < 3; ++k) corners[k][lane] = &screen.surfaces.vertices[vertices[k]];
+    const Screen::Block& block = screen.block_of(triangles[lane]);
+    const auto& corners = block.corners[triangles[lane] - block.first];
+    for (std::size_t k = 0; k < 3; ++k) {
+      position_of[k][lane] = &block.positions[corners[k]];
+      normal_of[k][lane] = block.normals.first ? &block.normals[corners[k]] : &kNone;
+    }
   }
-  const auto gathered = [&](std::size_t k, Vec3d Tessellation::Vertex::*member) {
-    const auto& from = corners[k];
-    return Vec3<N>(N([&](auto lane) { return (from[lane]->*member).x; }),
-                   N([&](auto lane) { return (from[lane]->*member).y; }),
-                   N([&](auto lane) { return (from[lane]->*member).z; }));
+  const auto gathered = [](const std::array<const Vec3d*, kLanes>& from) {
+    return Vec3<N>(N([&](auto lane) { return from[lane]->x; }), N([&](auto lane) { return from[lane]->y; }),
+                   N([&](auto lane) { return from[lane]->z; }));
   };
   const N zero(0);
   N::mask_type is_smooth(smooth);
   for (std::size_t k = 0; k < 3; ++k) {
-    positions[k] = gathered(k, &Tessellation::Vertex::position);
+    positions[k] = gathered(position_of[k]);
     if (!smooth) continue;
-    normals[k] = gathered(k, &Tessellation::Vertex::normal);
+    normals[k] = gathered(normal_of[k]);
     is_smooth = is_smooth && (normals[k].x != zero || normals[k].y != zero || normals[k].z != zero);
   }
   const auto& [a, b, c] = positions;

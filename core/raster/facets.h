@@ -8,7 +8,7 @@ namespace orrery {
 struct Facets {
   using N = Lanes<double>;
   static constexpr int kLanes = kWidth<double>;
-  using Numbers = std::array<std::uint32_t, kLanes>;  // in Tessellation::triangles
+  using Numbers = std::array<std::uint32_t, kLanes>;  // see Screen::Block
   using Weights = Vec3<N>;                            // one for each corner of a triangle
 
   std::array<Vec3<N>, 3> positions, normals;

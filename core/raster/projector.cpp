@@ -17,18 +17,15 @@ Projector::Projector(const Plan& plan, const SampleRange& samples)
       scale_(plan.height / (2 * plan.frame.half_extent)),
       reach_(double(samples.hi) / kSubpixels) {}
 
-void Projector::project(std::span<const Tessellation::Vertex> from, ScreenVertex* to) const {
+void Projector::project(const Strided<Vec3d>& from, std::size_t begin, std::size_t end,
+                        ScreenVertex* to) const {
   using N = Lanes<double>;
-  constexpr std::size_t kLanes = N::size();
-  std::size_t i = 0;
-  for (; i + kLanes <= from.size(); i += kLanes) {
-    const Tessellation::Vertex* const some = &from[i];
-    project(
-        Vec3<N>(N([&](auto k) { return some[k].position.x; }), N([&](auto k) { return some[k].position.y; }),
-                N([&](auto k) { return some[k].position.z; })),
-        to + i);
-  }
-  for (; i < from.size(); ++i) project(from[i].position, to + i);
+  std::size_t i = begin;
+  for (; i + N::size() <= end; i += N::size())
+    project(Vec3<N>(N([&](auto k) { return from[i + k].x; }), N([&](auto k) { return from[i + k].y; }),
+                    N([&](auto k) { return from[i + k].z; })),
+            to + i);
+  for (; i < end; ++i) project(from[i], to + i);
 }
 
 template <class N>

@@ -14,7 +14,8 @@ class Projector {
  public:
   Projector(const Plan& plan, const SampleRange& samples);
 
-  void project(std::span<const Tessellation::Vertex> from, ScreenVertex* to) const;
+  // Projects from[begin] to from[end - 1] to to[begin] to to[end - 1].
+  void project(const Strided<Vec3d>& from, std::size_t begin, std::size_t end, ScreenVertex* to) const;
   // Calls add(triangle, corners) for the parts of a triangle inside the region to which triangles are
   // clipped.
   template <class Add>

@@ -29,6 +29,17 @@ struct ScreenTriangle {
   std::array<double, 3> nearness;
 };
 
+// Objects at equal distances in memory.
+template <class X>
+struct Strided {
+  const X* first = nullptr;
+  std::size_t stride = sizeof(X);  // bytes
+
+  const X& operator[](std::size_t i) const {
+    return *reinterpret_cast<const X*>(reinterpret_cast<const std::byte*>(first) + i * stride);
+  }
+};
+
 // Elements of tiles of TileGrid, sorted by tile.
 template <class X>
 struct ByTile {
@@ -45,8 +56,18 @@ struct ByTile {
 
 // Triangles of a scene in one image, sorted by tile.
 struct Screen {
-  // Number of a part of a triangle: kParts times the index in Tessellation::triangles. Parts of a clipped
-  // triangle add 1, 2, ...
+  // Triangles that are stored in one place, and their vertices.
+  struct Block {
+    std::uint32_t first = 0, size = 0;  // number of the first triangle, and how many there are
+    std::size_t first_vertex = 0;       // of `positions`, in Screen::vertices
+    Strided<std::array<std::uint32_t, 3>> corners = {};  // anticlockwise as seen from outside
+    Strided<Vec3d> positions = {};
+    Strided<Vec3d> normals = {};  // outward unit normals, or 0: that of the triangle. Null if all are 0
+    Strided<std::int32_t> primitives = {};  // null if they ascend from first_primitive
+    std::int32_t first_primitive = 0;
+  };
+  // Number of a part of a triangle: kParts times the number of the triangle. Parts of a clipped triangle add
+  // 1, 2, ...
   using Number = std::uint32_t;
   static constexpr Number kParts = 8;
   static constexpr std::size_t kChunk = 16'384;  // triangles of a chunk
@@ -64,25 +85,37 @@ struct Screen {
     Number number;
     std::uint16_t slot;  // element of the batch of the tile
   };
-  // kChunk triangles in the order of Tessellation::triangles. All lists are in ascending order of numbers,
-  // within tiles if sorted by tile.
+  // Up to kChunk consecutive triangles of a block. All lists are in ascending order of numbers, within tiles
+  // if sorted by tile.
   struct Chunk {
-    std::vector<ClippedPart> clipped;
-    ByTile<Number> triangles;    // all triangles that overlap a tile, except those in `fragments`
-    ByTile<Fragment> fragments;  // all samples that small triangles cover
+    const Block* block = nullptr;
+    std::vector<ClippedPart> clipped = {};
+    ByTile<Number> triangles = {};    // all triangles that overlap a tile, except those in `fragments`
+    ByTile<Fragment> fragments = {};  // all samples that small triangles cover
   };
+  std::shared_ptr<const Scene> scene;        // owns meshes of `surfaces`
   Tessellation surfaces;                     // in scene coordinates
-  std::unique_ptr<ScreenVertex[]> vertices;  // one for each of surfaces.vertices
-  std::vector<Chunk> chunks;
-  bool parallel = false;  // whether rays of the camera are parallel
-  bool centred = false;   // whether all samples are in the centres of pixels. Otherwise nothing is a fragment
+  std::vector<Block> blocks;                 // of `surfaces`, in their order
+  std::unique_ptr<ScreenVertex[]> vertices;  // all vertices of `surfaces`, then those of its meshes
+  std::size_t vertex_count = 0;
+  std::vector<Chunk> chunks;  // kChunk triangle numbers each
+  bool parallel = false;      // whether rays of the camera are parallel
+  bool centred = false;  // whether all samples are in the centres of pixels. Otherwise nothing is a fragment
   int tiles_across = 0;
 
+  const Block& block_of(std::uint32_t triangle) const { return *chunks[triangle / kChunk].block; }
+  std::int32_t primitive(std::uint32_t triangle) const {
+    const Block& block = block_of(triangle);
+    const std::uint32_t i = triangle - block.first;
+    return block.primitives.first ? block.primitives[i] : block.first_primitive + static_cast<int>(i);
+  }
   const ClippedPart& clipped(Number number) const;
   ScreenTriangle triangle(Number number) const {
     if (number % kParts != 0) return clipped(number).triangle;
-    const auto& [a, b, c] = surfaces.triangles[number / kParts].vertices;
-    const ScreenVertex &p = vertices[a], &q = vertices[b], &r = vertices[c];
+    const Block& block = block_of(number / kParts);
+    const auto& [a, b, c] = block.corners[number / kParts - block.first];
+    const ScreenVertex* const at = &vertices[block.first_vertex];
+    const ScreenVertex &p = at[a], &q = at[b], &r = at[c];
     return {{p.x, q.x, r.x}, {p.y, q.y, r.y}, {p.nearness, q.nearness, r.nearness}};
   }
   // Returns the size of the triangles and the lists, in bytes.
@@ -91,11 +124,11 @@ struct Screen {
 
 // Largest number of triangles of a scene.
 inline constexpr std::size_t kMaxScreenTriangles = 40'000'000;
-static_assert(kMaxScreenTriangles <= std::numeric_limits<Screen::Number>::max() / Screen::kParts);
+static_assert(kMaxScreenTriangles <= std::numeric_limits<Screen::Number>::max() / Screen::kParts / 2);
 
 // Returns triangles that are within Plan::tessellation_error pixels of the surfaces of the scene at
 // Plan::time, projected to the image of the plan. Uses oneTBB workers. Throws Cancelled, and InputError
 // (/render/technique) if there are more than kMaxScreenTriangles. REQUIRES: the camera is not all-around.
-std::shared_ptr<const Screen> make_screen(const Scene& scene, const Plan& plan);
+std::shared_ptr<const Screen> make_screen(std::shared_ptr<const Scene> scene, const Plan& plan);
 
 }  // namespace orrery

@@ -39,14 +39,17 @@ class Tessellator {
  public:
   Tessellator(double time, std::size_t max_triangles) : time_(time), max_triangles_(max_triangles) {}
 
-  // Adds the primitives of the sets, numbered from `first`. Returns the number after the last.
-  int add(const std::vector<std::unique_ptr<ShapeSet>>& sets, const TessellationView& view, int first) {
+  // Adds the primitives of the sets, numbered from `first`. `may_refer`: they are in scene coordinates.
+  // Returns the number after the last.
+  int add(const std::vector<std::unique_ptr<ShapeSet>>& sets, const TessellationView& view, int first,
+          bool may_refer) {
     for (const auto& shapes : sets) {
       if (shapes->size() == 0) continue;
       const auto posed = shapes->at(time_);
+      out_.may_refer = may_refer && !posed;
       (posed ? *posed : *shapes).tessellate(view, first, out_);
       first += shapes->size();
-      if (out_.triangles.size() > max_triangles_)
+      if (out_.size() > max_triangles_)
         throw InputError("/render/technique", "needs more than " + grouped(max_triangles_) +
                                                   " triangles for this scene; a larger tessellation_error "
                                                   "needs fewer");
@@ -56,7 +59,8 @@ class Tessellator {
 
   int add(const Model& model, const Affined& world_from_model, const TessellationView& view, int first) {
     const std::size_t first_vertex = out_.vertices.size(), first_triangle = out_.triangles.size();
-    const int next = add(model.shapes, in_model(view, world_from_model, inverse(world_from_model)), first);
+    const int next =
+        add(model.shapes, in_model(view, world_from_model, inverse(world_from_model)), first, false);
     for (std::size_t i = first_vertex; i < out_.vertices.size(); ++i) {
       Tessellation::Vertex& vertex = out_.vertices[i];
       vertex.position = world_from_model.point(vertex.position);
@@ -81,7 +85,7 @@ class Tessellator {
 Tessellation tessellate(const Scene& scene, const Plan& plan, std::size_t max_triangles) {
   const TessellationView view = view_of(plan);
   Tessellator tessellator(plan.time, max_triangles);
-  int first = tessellator.add(scene.shapes, view, 0);
+  int first = tessellator.add(scene.shapes, view, 0, true);
   for (const Instance& instance : scene.instances) {
     checkpoint();
     first = tessellator.add(scene.models[instance.model], instance.world_from_model(plan.time), view, first);

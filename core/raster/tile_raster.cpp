@@ -83,15 +83,17 @@ template <bool peels>
 void TileRaster::draw_triangles() {
   const int across = tile_.x0 / kTileSide, down = tile_.y0 / kTileSide;
   const auto tile = static_cast<std::uint32_t>(down * screen_.tiles_across + across);
-  const auto& triangles = screen_.surfaces.triangles;
   for (const Screen::Chunk& chunk : screen_.chunks) {
     checkpoint();
+    const Screen::Block& block = *chunk.block;
     const std::span<const Screen::Number> numbers = chunk.triangles.of(tile);
     for (std::size_t i = 0; i < numbers.size(); ++i) {
-      __builtin_prefetch(&triangles[numbers[std::min(i + 2 * kAhead, numbers.size() - 1)] / Screen::kParts]);
-      const Screen::Number later = numbers[std::min(i + kAhead, numbers.size() - 1)];
-      for (const std::uint32_t vertex : triangles[later / Screen::kParts].vertices)
-        __builtin_prefetch(&screen_.vertices[vertex]);
+      const auto corners = [&](std::size_t ahead) -> const auto& {
+        return block.corners[numbers[std::min(i + ahead, numbers.size() - 1)] / Screen::kParts - block.first];
+      };
+      __builtin_prefetch(&corners(2 * kAhead));
+      for (const std::uint32_t vertex : corners(kAhead))
+        __builtin_prefetch(&screen_.vertices[block.first_vertex + vertex]);
       draw<peels>(screen_.triangle(numbers[i]), numbers[i]);
     }
     for (const Screen::Fragment& fragment : chunk.fragments.of(tile)) draw<peels>(fragment);

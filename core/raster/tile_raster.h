@@ -23,7 +23,7 @@ class TileRaster {
   void peel(const std::array<bool, kBatch>& wanted);
 
   bool covered(int slot) const { return nearest_[slot] >= 0; }
-  // Returns the number in Tessellation::triangles of the triangle at a sample. REQUIRES: covered(slot).
+  // Returns the number of the triangle at a sample: see Screen::Block. REQUIRES: covered(slot).
   std::uint32_t triangle(int slot) const { return number(slot) / Screen::kParts; }
   // Returns the weights of the corners of triangle(slot) at samples, whose sum is 1 up to rounding. REQUIRES:
   // the samples are covered.

@@ -90,6 +90,12 @@ class MeshSet final : public ShapeSet {
     return patch_of(table_.corners(static_cast<std::size_t>(index)));
   }
   void tessellate(const TessellationView&, int first, Tessellation& out) const override {
+    const bool no_normals = table_.normals.empty();
+    if (out.may_refer && (no_normals || table_.normals.size() == table_.positions.size())) {
+      out.meshes.push_back(
+          {table_.positions, table_.normals, table_.triangles, first, out.triangles.size()});
+      return;
+    }
     const auto first_vertex = static_cast<std::uint32_t>(out.vertices.size());
     out.vertices.reserve(out.vertices.size() + table_.positions.size());
     for (const Vec3d& position : table_.positions) out.add(position);
