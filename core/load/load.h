@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/model/asset_source.h"
 #include "core/model/scene.h"
 #include "core/params/document.h"
 #include "core/plan/request.h"

@@ -3,11 +3,11 @@
 #include <memory>
 #include <optional>
 
-#include "core/model/asset_source.h"
 #include "core/model/light.h"
 
 namespace orrery {
 
+class AssetSource;
 class Params;
 
 // Environment light: radiance from infinity, received by rays that miss everything. Immutable and

@@ -8,7 +8,6 @@
 
 #include "core/math/bounds.h"
 #include "core/math/exposure.h"
-#include "core/model/asset_source.h"
 #include "core/model/occupied_space.h"
 #include "core/model/packet.h"
 
@@ -16,6 +15,7 @@
 // creates a ShapeKernel in the plan's number type. Kernel functions process whole batches.
 namespace orrery {
 
+struct MeshSource;
 class Params;
 struct Tessellation;
 struct TessellationView;
