@@ -6,19 +6,43 @@
 
 namespace orrery {
 
-template <class Read>
-auto AssetFiles::read_with(const std::string& name, const Read& read) const {
-  namespace fs = std::filesystem;
+namespace {
+
+namespace fs = std::filesystem;
+
+// Returns the path of a file in a folder or below it, with symbolic links resolved. Throws InputError if the
+// file is elsewhere or no regular file. `folder_name`: name of the folder in errors.
+fs::path path_within(const fs::path& given_folder, const std::string& name, const char* folder_name) {
   if (name.find('\0') != std::string::npos) throw InputError("", "file name must not contain NUL");
   std::error_code error;
-  const fs::path folder = fs::canonical(folder_.empty() ? "." : folder_, error);
+  const fs::path folder = fs::canonical(given_folder.empty() ? "." : given_folder, error);
   const fs::path path = fs::canonical(folder / name, error);  // resolves symbolic links
-  if (error) throw InputError("", "cannot read " + (folder_ / name).string() + ": " + error.message());
+  if (error) throw InputError("", "cannot read " + (given_folder / name).string() + ": " + error.message());
   if (std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first != folder.end())
-    throw InputError("", "must be a file in the scene's folder or below it (got " + name + ")");
+    throw InputError("", "must be a file in the folder of the " + std::string(folder_name) +
+                             " or below it (got " + name + ")");
   if (!fs::is_regular_file(path)) throw InputError("", "cannot read " + name + ": not a regular file");
+  return path;
+}
+
+}  // namespace
+
+ReadNearby files_beside(const fs::path& file) {
+  return [folder = file.parent_path()](const std::string& name) {
+    const fs::path path = path_within(folder, name, "model");
+    try {
+      return read_file(path.string());
+    } catch (const FileError& unreadable) {
+      throw InputError("", unreadable.what());
+    }
+  };
+}
+
+template <class Read>
+auto AssetFiles::read_with(const std::string& name, const Read& read) const {
+  const fs::path path = path_within(folder_, name, "scene");
   try {
-    return read(read_file(path.string()));
+    return read(read_file(path.string()), path);
   } catch (const FileError& unreadable) {
     throw InputError("", unreadable.what());
   } catch (const InputError& bad) {
@@ -27,12 +51,15 @@ auto AssetFiles::read_with(const std::string& name, const Read& read) const {
 }
 
 TriangleMesh AssetFiles::mesh_file(const std::string& name) const {
-  return read_with(name, [](const std::string& bytes) { return read_mesh(bytes); });
+  return read_with(name, [](const std::string& bytes, const fs::path& path) {
+    return read_mesh(bytes, {}, files_beside(path));
+  });
 }
 
 TexelsPtr AssetFiles::picture_file(const std::string& name) const {
-  return read_with(
-      name, [](const std::string& bytes) { return std::make_shared<const Texels>(read_picture(bytes)); });
+  return read_with(name, [](const std::string& bytes, const fs::path&) {
+    return std::make_shared<const Texels>(read_picture(bytes));
+  });
 }
 
 }  // namespace orrery

@@ -6,6 +6,9 @@
 
 namespace orrery {
 
+// Returns a function that reads files in the folder of a mesh file, or below it.
+ReadNearby files_beside(const std::filesystem::path& file);
+
 // Mesh and image files in the folder of a scene or below it.
 class AssetFiles final : public AssetSource {
  public:
@@ -14,7 +17,7 @@ class AssetFiles final : public AssetSource {
   TexelsPtr picture_file(const std::string& name) const override;
 
  private:
-  // Returns read(bytes) for the file. Throws InputError with the file's name.
+  // Returns read(bytes, path) for the file. Throws InputError with the file's name.
   template <class Read>
   auto read_with(const std::string& name, const Read& read) const;
 

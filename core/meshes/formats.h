@@ -17,11 +17,11 @@ namespace orrery {
 TriangleMesh read_obj(std::string_view bytes, const MeshLimits& limits);
 TriangleMesh read_ply(std::string_view bytes, const MeshLimits& limits);
 TriangleMesh read_stl(std::string_view bytes, const MeshLimits& limits);
-TriangleMesh read_gltf(std::string_view bytes, const MeshLimits& limits);
+TriangleMesh read_gltf(std::string_view bytes, const MeshLimits& limits, const ReadNearby& nearby);
 
-// Returns the number of triangles of a binary STL, or 0 for any other file. The count in the header must
-// match the file size. A text file cannot match, because its bytes would encode a count of at least 150
-// million triangles, or more than 7 GB.
+// Returns the number of triangles of a binary STL, or 0 for any other file. The file must have room for the
+// count in the header, and may have a few bytes after the last triangle. A text file has no room, because its
+// bytes would encode a count of at least 150 million triangles, or more than 7 GB.
 std::size_t binary_stl_triangles(std::string_view bytes);
 
 // Returns true if `word` equals the lower-case `keyword`, ignoring case.

@@ -14,6 +14,7 @@ namespace {
 // Maximum number of placed primitives. A small file can place many primitives, because nodes may share a
 // mesh.
 constexpr std::size_t kMaxPlaced = 250'000;
+constexpr std::size_t kMaxNamed = 20;  // extensions that notes name
 
 // Returns true if the extension does not change geometry, or if it is supported (quantized attributes).
 bool is_harmless(std::string_view extension) {
@@ -25,7 +26,8 @@ bool is_harmless(std::string_view extension) {
 
 class SceneReader {
  public:
-  SceneReader(std::string_view bytes, const MeshLimits& limits) : file_(bytes), limits_(limits) {}
+  SceneReader(std::string_view bytes, const MeshLimits& limits, const ReadNearby& nearby)
+      : file_(bytes, nearby), limits_(limits) {}
 
   TriangleMesh read() {
     if (const auto required = file_.root().find("extensionsRequired"))
@@ -37,10 +39,27 @@ class SceneReader {
     place(nodes, roots(nodes));
     if (!all_normals_) mesh_.normals.clear();
     if (!all_uvs_) mesh_.uvs.clear();
+    add_notes();
     return std::move(mesh_);
   }
 
  private:
+  // Names the contents that are not modelled.
+  void add_notes() {
+    constexpr std::pair<const char*, const char*> kLists[] = {
+        {"materials", "materials"}, {"animations", "animations"}, {"skins", "skins"}, {"cameras", "cameras"}};
+    for (const auto& [key, what] : kLists)
+      if (const auto list = file_.root().find(key); list && list->size() > 0)
+        mesh_.notes.push_back(grouped(list->size()) + " " + what + " are not modelled");
+    if (has_morphs_) mesh_.notes.push_back("morph targets are not modelled");
+    if (without_surface_ > 0)
+      mesh_.notes.push_back(grouped(without_surface_) + " primitives of points or lines are not rendered");
+    if (const auto used = file_.root().find("extensionsUsed"))
+      for (std::size_t i = 0; i < std::min<std::size_t>(used->size(), kMaxNamed); ++i)
+        if (const std::string& name = used->item(i).text(); name != "KHR_mesh_quantization")
+          mesh_.notes.push_back("extension " + excerpt(name) + " is not modelled");
+  }
+
   // Returns the root nodes of the default scene. If the file has no default scene, returns every node that is
   // not a child.
   std::vector<std::size_t> roots(const GltfValue& nodes) const {
@@ -100,7 +119,11 @@ class SceneReader {
                      grouped(kMaxPlaced) + ")");
     const std::uint64_t mode = integer_or(primitive, "mode", 4);
     if (mode > 6) primitive.fail("mode must be from 0 to 6 (got " + std::to_string(mode) + ")");
-    if (mode < 4) return;  // points and lines have no surface
+    if (mode < 4) {  // points and lines have no surface
+      ++without_surface_;
+      return;
+    }
+    if (primitive.find("targets")) has_morphs_ = true;
     const GltfValue attributes = primitive.at("attributes");
     const std::size_t first = mesh_.positions.size();
     add_vertices(attributes, world_from_node);
@@ -196,13 +219,14 @@ class SceneReader {
   const MeshLimits& limits_;
   TriangleMesh mesh_;
   bool all_normals_ = true, all_uvs_ = true;  // true if every primitive already read has normals or uvs
-  std::size_t placed_ = 0;
+  std::size_t placed_ = 0, without_surface_ = 0;
+  bool has_morphs_ = false;
 };
 
 }  // namespace
 
-TriangleMesh read_gltf(std::string_view bytes, const MeshLimits& limits) {
-  return SceneReader(bytes, limits).read();
+TriangleMesh read_gltf(std::string_view bytes, const MeshLimits& limits, const ReadNearby& nearby) {
+  return SceneReader(bytes, limits, nearby).read();
 }
 
 }  // namespace orrery

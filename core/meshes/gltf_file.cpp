@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <charconv>
+#include <cmath>
 #include <cstring>
 
+#include "core/base/task_scope.h"
 #include "core/meshes/formats.h"
 #include "core/meshes/text.h"
 
@@ -90,13 +93,13 @@ std::array<std::int8_t, 256> base64_digits() {
 }
 
 // Decodes base64 (RFC 4648). Padding is optional.
-std::vector<char> decode_base64(std::string_view text, const GltfValue& place) {
+std::string decode_base64(std::string_view text, const GltfValue& place) {
   while (text.ends_with('=')) text.remove_suffix(1);
   if (text.size() % 4 == 1)
     place.fail("must be base64 (got " + std::to_string(text.size()) +
                " digits, one more than a multiple of 4)");
   const auto digits = base64_digits();
-  std::vector<char> bytes;
+  std::string bytes;
   bytes.reserve(text.size() / 4 * 3 + 2);
   std::uint32_t bits = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -111,16 +114,56 @@ std::vector<char> decode_base64(std::string_view text, const GltfValue& place) {
   return bytes;
 }
 
+// Decodes %20 and the like (RFC 3986).
+std::string decode_percent(const std::string& text) {
+  std::string decoded;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    unsigned code = 0;
+    if (text[i] == '%' && i + 2 < text.size() &&
+        std::from_chars(text.data() + i + 1, text.data() + i + 3, code, 16).ptr == text.data() + i + 3) {
+      decoded += static_cast<char>(code);
+      i += 2;
+    } else {
+      decoded += text[i];
+    }
+  }
+  return decoded;
+}
+
+// Returns the bytes of a data: URI, or of the file that the URI names.
+std::string bytes_of(const GltfValue& uri, const ReadNearby& nearby) {
+  const std::string& text = uri.text();
+  constexpr std::string_view kMark = ";base64,";
+  const std::size_t comma = text.find(',');
+  if (text.starts_with("data:") && comma != text.npos && text.substr(0, comma + 1).ends_with(kMark))
+    return decode_base64(std::string_view(text).substr(comma + 1), uri);
+  if (!nearby || text.starts_with("data:") || text.find("://") != text.npos)
+    uri.fail("must be a data: URI in base64" + std::string(nearby ? ", or the name of a file" : "") +
+             ", because other files are not read (got " + excerpt(text) +
+             "); a .glb file contains its buffers");
+  try {
+    return nearby(decode_percent(text));
+  } catch (const InputError& error) {
+    uri.fail(error.problems().front().detail);
+  }
+}
+
+std::size_t components_of(std::string_view type) { return type == "SCALAR" ? 1 : type == "VEC2" ? 2 : 3; }
+
+// Maximum number of values of an accessor that is not in a buffer.
+constexpr std::uint64_t kMaxUnpacked = 30'000'000;
+
 }  // namespace
 
-GltfFile::GltfFile(std::string_view bytes) {
+GltfFile::GltfFile(std::string_view bytes, const ReadNearby& nearby) : nearby_(nearby) {
   Chunks chunks{bytes, {}};
   if (bytes.starts_with("glTF")) chunks = split_glb(bytes);
   document_ = parse_gltf(chunks.json);
   binary_ = chunks.binary;
   const GltfValue version = root().at("asset").at("version");
   if (!version.text().starts_with("2."))
-    version.fail("must be \"2.0\" (got " + excerpt(version.text()) + ")");
+    version.fail("must be \"2.0\" (got " + excerpt(version.text()) +
+                 "); gltf-pipeline or Blender convert older files");
   if (const auto buffers = root().find("buffers")) buffers_.resize(buffers->size());
 }
 
@@ -130,14 +173,8 @@ std::string_view GltfFile::buffer(const GltfValue& user) {
   Buffer& entry = buffers_[index];
   if (entry.decoded) return entry.bytes;
   if (const auto uri = buffer.find("uri")) {
-    const std::string& text = uri->text();
-    constexpr std::string_view kMark = ";base64,";
-    const std::size_t comma = text.find(',');
-    if (!text.starts_with("data:") || comma == text.npos || !text.substr(0, comma + 1).ends_with(kMark))
-      uri->fail("must be a data: URI in base64, because external files are not supported (got " +
-                excerpt(text) + ")");
-    entry.own = decode_base64(std::string_view(text).substr(comma + 1), *uri);
-    entry.bytes = {entry.own.data(), entry.own.size()};
+    entry.own = bytes_of(*uri, nearby_);
+    entry.bytes = entry.own;
   } else {
     if (index != 0 || binary_.empty()) buffer.fail("missing key \"uri\"");
     entry.bytes = binary_;
@@ -162,37 +199,84 @@ std::string_view GltfFile::view(const GltfValue& user) {
   return bytes.substr(offset, length);
 }
 
-GltfNumbers GltfFile::accessor(const GltfValue& user, std::string_view type) {
-  const GltfValue accessor = root().at("accessors").item(user.integer());
-  if (accessor.find("sparse")) accessor.fail("sparse accessors are not supported");
-  const GltfValue stated = accessor.at("type");
-  if (stated.text() != type)
-    stated.fail("must be " + excerpt(type) + " (got " + excerpt(stated.text()) + ")");
-  const ComponentType component = component_type(accessor.at("componentType"));
-  const auto normalized = accessor.find("normalized");
-
+GltfNumbers GltfFile::elements(const GltfValue& place, std::uint64_t count, std::string_view type,
+                               const GltfValue& component_type, bool normalized) {
+  const ComponentType component = orrery::component_type(component_type);
   GltfNumbers numbers{};
-  numbers.components = type == "SCALAR" ? 1 : type == "VEC2" ? 2 : 3;
+  numbers.components = components_of(type);
   numbers.component_bytes = component.bytes;
-  numbers.load = normalized && normalized->flag() ? component.load_normalized : component.load;
+  numbers.load = normalized ? component.load_normalized : component.load;
   const std::size_t element = numbers.components * component.bytes;
 
-  const GltfValue view_index = accessor.at("bufferView");
+  const GltfValue view_index = place.at("bufferView");
   const std::string_view bytes = view(view_index);
-  const std::uint64_t offset = integer_or(accessor, "byteOffset", 0), count = accessor.at("count").integer();
+  const std::uint64_t offset = integer_or(place, "byteOffset", 0);
   numbers.stride = integer_or(root().at("bufferViews").item(view_index.integer()), "byteStride", element);
   if (numbers.stride < element || numbers.stride > 252)
-    accessor.fail("byteStride must be from " + std::to_string(element) + " to 252 (got " +
-                  std::to_string(numbers.stride) + ")");
+    place.fail("byteStride must be from " + std::to_string(element) + " to 252 (got " +
+               std::to_string(numbers.stride) + ")");
   if (count == 0 || offset > bytes.size() || element > bytes.size() - offset ||
       count - 1 > (bytes.size() - offset - element) / numbers.stride)
-    accessor.fail("must have at least 1 element of " + std::to_string(element) + " bytes, " +
-                  std::to_string(numbers.stride) + " bytes apart, within the " +
-                  std::to_string(bytes.size()) + " bytes of the buffer view (got " + std::to_string(count) +
-                  " elements from byte " + std::to_string(offset) + ")");
+    place.fail("must have at least 1 element of " + std::to_string(element) + " bytes, " +
+               std::to_string(numbers.stride) + " bytes apart, within the " + std::to_string(bytes.size()) +
+               " bytes of the buffer view (got " + std::to_string(count) + " elements from byte " +
+               std::to_string(offset) + ")");
   numbers.count = count;
   numbers.data = bytes.data() + offset;
   return numbers;
+}
+
+GltfNumbers GltfFile::unpacked(const GltfValue& accessor, std::uint64_t count, std::string_view type,
+                               bool normalized) {
+  const std::size_t components = components_of(type);
+  if (count == 0 || count > kMaxUnpacked / components)
+    accessor.fail("count must be from 1 to " + grouped(kMaxUnpacked / components) + " (got " +
+                  std::to_string(count) + ")");
+  std::vector<double>& values = unpacked_.emplace_back(count * components);
+  if (accessor.find("bufferView")) {
+    const GltfNumbers dense = elements(accessor, count, type, accessor.at("componentType"), normalized);
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] = dense.value(k / components, k % components);
+  }
+  if (const auto sparse = accessor.find("sparse")) {
+    const GltfValue replaced = sparse->at("indices");
+    const std::uint64_t replacements = sparse->at("count").integer();
+    const GltfNumbers places =
+        elements(replaced, replacements, "SCALAR", replaced.at("componentType"), false);
+    const GltfNumbers replacing =
+        elements(sparse->at("values"), replacements, type, accessor.at("componentType"), normalized);
+    for (std::size_t i = 0; i < places.count; ++i) {
+      checkpoint(i);
+      const double at = places.value(i, 0);
+      if (!(at >= 0 && at < static_cast<double>(count) && at == std::floor(at)))
+        replaced.fail("indices must be integers >= 0 and < " + std::to_string(count) + " (got " +
+                      text_of(at) + " at entry " + std::to_string(i) + ")");
+      for (std::size_t c = 0; c < components; ++c)
+        values[static_cast<std::size_t>(at) * components + c] = replacing.value(i, c);
+    }
+  }
+  return {reinterpret_cast<const char*>(values.data()),
+          count,
+          components * sizeof(double),
+          components,
+          sizeof(double),
+          [](const char* bytes) {
+            double value;
+            std::memcpy(&value, bytes, sizeof value);
+            return value;
+          }};
+}
+
+GltfNumbers GltfFile::accessor(const GltfValue& user, std::string_view type) {
+  const GltfValue accessor = root().at("accessors").item(user.integer());
+  const GltfValue stated = accessor.at("type");
+  if (stated.text() != type)
+    stated.fail("must be " + excerpt(type) + " (got " + excerpt(stated.text()) + ")");
+  const auto flag = accessor.find("normalized");
+  const bool normalized = flag && flag->flag();
+  const std::uint64_t count = accessor.at("count").integer();
+  if (accessor.find("sparse") || !accessor.find("bufferView"))
+    return unpacked(accessor, count, type, normalized);
+  return elements(accessor, count, type, accessor.at("componentType"), normalized);
 }
 
 }  // namespace orrery

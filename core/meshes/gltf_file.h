@@ -1,8 +1,11 @@
 #pragma once
 
+#include <deque>
+#include <string>
 #include <vector>
 
 #include "core/meshes/gltf_json.h"
+#include "core/meshes/mesh_file.h"
 
 namespace orrery {
 
@@ -19,23 +22,24 @@ struct GltfNumbers {
   }
 };
 
-// A .glb or .gltf file with its buffers. Never reads other files. Rejects external buffers. Throws InputError
-// and Cancelled. Not thread-safe, because accessor() decodes and caches buffers.
+// A .glb or .gltf file with its buffers. Throws InputError and Cancelled. Not thread-safe, because accessor()
+// decodes and caches buffers.
 class GltfFile {
  public:
-  explicit GltfFile(std::string_view bytes);
+  // `nearby` reads buffers in other files; if it is empty, they are an error.
+  GltfFile(std::string_view bytes, const ReadNearby& nearby);
 
   GltfValue root() const { return {document_, ""}; }
 
-  // Returns the numbers of the accessor whose index is the value `user`. Throws InputError if there is no
-  // such accessor, an element is outside the buffer view, or the type is not `type` ("SCALAR", "VEC2" or
-  // "VEC3").
+  // Returns the numbers of the accessor whose index is the value `user`, with the replacements of a sparse
+  // accessor. Throws InputError if there is no such accessor, an element is outside the buffer view, or the
+  // type is not `type` ("SCALAR", "VEC2" or "VEC3").
   GltfNumbers accessor(const GltfValue& user, std::string_view type);
 
  private:
   struct Buffer {
     bool decoded = false;
-    std::vector<char> own;  // decoded bytes of a data: URI
+    std::string own;  // bytes of a data: URI or of another file
     std::string_view bytes;
   };
 
@@ -43,6 +47,15 @@ class GltfFile {
   std::string_view view(const GltfValue& user);
   std::string_view buffer(const GltfValue& user);
 
+  // Returns the elements of the buffer view that `place` names, at its byteOffset.
+  GltfNumbers elements(const GltfValue& place, std::uint64_t count, std::string_view type,
+                       const GltfValue& component_type, bool normalized);
+  // Returns the numbers of a sparse accessor, or of one without a buffer view.
+  GltfNumbers unpacked(const GltfValue& accessor, std::uint64_t count, std::string_view type,
+                       bool normalized);
+
+  const ReadNearby& nearby_;
+  std::deque<std::vector<double>> unpacked_;  // numbers of accessors that are not in a buffer
   nlohmann::json document_;
   std::string_view binary_;  // BIN chunk of a .glb file
   std::vector<Buffer> buffers_;

@@ -14,12 +14,14 @@ namespace {
 constexpr std::size_t kMaxDepth = 32;          // levels; geometry needs 6
 constexpr std::size_t kMaxValues = 1'000'000;  // a value takes 16 to 80 bytes of memory
 
-constexpr std::string_view kTopKeys[] = {"asset",       "scene",   "scenes",
-                                         "nodes",       "meshes",  "accessors",
-                                         "bufferViews", "buffers", "extensionsRequired"};
+constexpr std::string_view kTopKeys[] = {"asset", "scene", "scenes", "nodes", "meshes", "accessors",
+                                         "bufferViews", "buffers", "extensionsRequired",
+                                         // Only for notes:
+                                         "extensionsUsed", "materials", "animations", "skins", "cameras"};
 
-// Builds the document from parser events. Skips the values that geometry does not need. nlohmann's callback
-// parser would take quadratic time, because it searches a container for discarded values after each element.
+// Builds the document from parser events. Skips the values that neither geometry nor notes need. nlohmann's
+// callback parser would take quadratic time, because it searches a container for discarded values after each
+// element.
 class GltfBuilder final : public nlohmann::json_sax<nlohmann::json> {
  public:
   nlohmann::json& document() { return document_; }

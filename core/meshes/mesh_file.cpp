@@ -50,22 +50,78 @@ void finish_normals(TriangleMesh& mesh) {
   }
 }
 
-TriangleMesh read_as(MeshFormat format, std::string_view bytes, const MeshLimits& limits) {
+// Returns UTF-16 text with a byte order mark as UTF-8, and other bytes unchanged. Unpaired surrogates become
+// U+FFFD.
+std::string utf8_of_utf16(std::string_view bytes) {
+  const bool big = bytes.starts_with("\xfe\xff");
+  const auto unit = [&](std::size_t i) {
+    const auto first = static_cast<unsigned char>(bytes[i]),
+               second = static_cast<unsigned char>(bytes[i + 1]);
+    return static_cast<std::uint32_t>(big ? first << 8 | second : second << 8 | first);
+  };
+  std::string text;
+  text.reserve(bytes.size() / 2);
+  for (std::size_t i = 2; i + 1 < bytes.size(); i += 2) {
+    checkpoint(i);
+    std::uint32_t code = unit(i);
+    if (code >= 0xd800 && code < 0xdc00 && i + 3 < bytes.size() && (unit(i + 2) & 0xfc00) == 0xdc00) {
+      code = 0x10000 + ((code - 0xd800) << 10) + (unit(i + 2) - 0xdc00);
+      i += 2;
+    } else if (code >= 0xd800 && code < 0xe000) {
+      code = 0xfffd;
+    }
+    const auto add = [&](std::uint32_t byte) { text += static_cast<char>(byte); };
+    if (code < 0x80) {
+      add(code);
+    } else if (code < 0x800) {
+      add(0xc0 | code >> 6);
+      add(0x80 | (code & 0x3f));
+    } else {
+      if (code < 0x10000) {
+        add(0xe0 | code >> 12);
+      } else {
+        add(0xf0 | code >> 18);
+        add(0x80 | (code >> 12 & 0x3f));
+      }
+      add(0x80 | (code >> 6 & 0x3f));
+      add(0x80 | (code & 0x3f));
+    }
+  }
+  return text;
+}
+bool is_utf16(std::string_view bytes) {
+  return bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff");
+}
+
+std::string joined(const std::vector<std::string>& notes) {
+  std::string text;
+  for (const std::string& note : notes) text += "; " + note;
+  return text;
+}
+
+TriangleMesh read_as(MeshFormat format, std::string_view bytes, const MeshLimits& limits,
+                     const ReadNearby& nearby) {
   switch (format) {
     case MeshFormat::obj: return read_obj(bytes, limits);
     case MeshFormat::ply: return read_ply(bytes, limits);
     case MeshFormat::stl: return read_stl(bytes, limits);
-    case MeshFormat::gltf: return read_gltf(bytes, limits);
+    case MeshFormat::gltf: return read_gltf(bytes, limits, nearby);
   }
   return {};
 }
 
 }  // namespace
 
+std::string_view name_of(MeshFormat format) {
+  constexpr std::array<std::string_view, 4> kNames{"obj", "ply", "stl", "gltf"};
+  return kNames[static_cast<std::size_t>(format)];
+}
+
 MeshFormat mesh_format(std::string_view bytes) {
   if (bytes.starts_with("glTF")) return MeshFormat::gltf;
   if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return MeshFormat::ply;
   if (binary_stl_triangles(bytes) > 0) return MeshFormat::stl;
+  if (is_utf16(bytes)) return mesh_format(utf8_of_utf16(bytes));
   const std::string_view word = first_word(without_byte_order_mark(bytes));
   if (word.starts_with('{')) return MeshFormat::gltf;
   if (is_keyword(word, "solid")) return MeshFormat::stl;
@@ -75,11 +131,14 @@ MeshFormat mesh_format(std::string_view bytes) {
                            std::to_string(bytes.size()) + " bytes that begin with " + excerpt(bytes) + ")");
 }
 
-TriangleMesh read_mesh(std::string_view bytes, const MeshLimits& limits) {
+TriangleMesh read_mesh(std::string_view bytes, const MeshLimits& limits, const ReadNearby& nearby) {
+  if (is_utf16(bytes) && binary_stl_triangles(bytes) == 0)
+    return read_mesh(utf8_of_utf16(bytes), limits, nearby);
   const MeshFormat format = mesh_format(bytes);
   const bool is_text = binary_stl_triangles(bytes) == 0;  // a binary STL may begin with any bytes
-  TriangleMesh mesh = read_as(format, is_text ? without_byte_order_mark(bytes) : bytes, limits);
-  if (mesh.triangles.empty()) throw InputError("", "mesh must have at least 1 triangle (got 0)");
+  TriangleMesh mesh = read_as(format, is_text ? without_byte_order_mark(bytes) : bytes, limits, nearby);
+  if (mesh.triangles.empty())
+    throw InputError("", "mesh must have at least 1 triangle (got 0" + joined(mesh.notes) + ")");
   finish_normals(mesh);
   return mesh;
 }

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -18,6 +20,8 @@ struct TriangleMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;  // anticlockwise seen from the front
   std::vector<Vec3d> normals;                           // per position, unit; or empty
   std::vector<std::array<double, 2>> uvs;               // per position, (0, 0) lower left; or empty
+  // Sentences without a full stop about contents of the file that the mesh lacks, or that were repaired.
+  std::vector<std::string> notes = {};
 };
 
 // Largest absolute coordinate, in metres. Equals the limit for scenes.
@@ -28,18 +32,24 @@ struct MeshLimits {
   std::size_t vertices = 10'000'000, triangles = 10'000'000;
 };
 
+// Returns the bytes of a file that a mesh file names, by its name relative to the mesh file. Throws
+// InputError (pointer "") if there is no such file or it must not be read.
+using ReadNearby = std::function<std::string(const std::string& name)>;
+
 enum class MeshFormat { obj, ply, stl, gltf };
+std::string_view name_of(MeshFormat format);  // "obj", "ply", "stl" or "gltf"
 
 // Detects the format from the content: glTF and PLY by their first bytes, binary STL by its size, ASCII STL
 // and OBJ by their first word. Throws InputError if no format matches. Throws Cancelled.
 MeshFormat mesh_format(std::string_view bytes);
 
 // Reads an OBJ, PLY (ASCII, binary of either byte order), STL (ASCII, binary) or glTF 2.0 file (.glb, or
-// .gltf with data: URIs). Detects the format from the content. Reads nothing except `bytes`. The same bytes
-// give the same mesh.
+// .gltf). Detects the format from the content. Text may be UTF-8 or, with a byte order mark, UTF-16. Buffers
+// of glTF files that are neither in the file nor in data: URIs are read by `nearby`; without it, they are an
+// error. The same bytes give the same mesh.
 //
-// Merges all geometry of the file into one mesh, and ignores materials. Splits polygons into triangle fans
-// about the first corner, which is correct only for convex polygons. Keeps triangles without area. Keeps
+// Merges all geometry of the file into one mesh. Its notes name the contents that it lacks, such as
+// materials. Divides polygons into triangles: see divide_polygons(). Keeps triangles without area. Keeps
 // normals only if all vertices have normals, and keeps uvs only if all vertices have uvs. Replaces
 // zero-length normals with normals computed from the faces around the vertex. A mesh from STL has no normals
 // and no uvs. Corners of an STL file at equal positions become one vertex. Replaces v of glTF by 1 - v, so
@@ -48,6 +58,6 @@ MeshFormat mesh_format(std::string_view bytes);
 // Throws InputError (pointer "") with the place in the file, the value and the limit. Before allocating
 // memory, checks every size in the file against `limits` and the number of available bytes. Throws Cancelled.
 // Thread-safe.
-TriangleMesh read_mesh(std::string_view bytes, const MeshLimits& limits = {});
+TriangleMesh read_mesh(std::string_view bytes, const MeshLimits& limits = {}, const ReadNearby& nearby = {});
 
 }  // namespace orrery

@@ -1,5 +1,6 @@
 #include "core/meshes/formats.h"
 #include "core/meshes/index_table.h"
+#include "core/meshes/polygons.h"
 #include "core/meshes/text.h"
 
 // Wavefront OBJ: reads v, vt, vn and f, and skips all other keywords (groups, materials, lines, free-form
@@ -33,6 +34,8 @@ class ObjReader {
         uvs_.push_back(read_uv());
       } else if (keyword == "f") {
         read_face();
+      } else {
+        count_skipped(keyword);
       }
     } while (text_.next_line(!keyword.starts_with('#')));  // a backslash does not continue a comment
     return build();
@@ -66,7 +69,10 @@ class ObjReader {
     if (count == 3) text_.fail("corner must be position/uv/normal (got " + excerpt(word) + ")");
     Corner corner;
     corner.position = read_index(parts[0], positions_.size(), "v");
-    if (!parts[1].empty()) corner.uv = read_index(parts[1], uvs_.size(), "vt");
+    if (!parts[1].empty() && uvs_.empty())
+      ++lost_uvs_;
+    else if (!parts[1].empty())
+      corner.uv = read_index(parts[1], uvs_.size(), "vt");
     if (!parts[2].empty()) corner.normal = read_index(parts[2], normals_.size(), "vn");
 
     const std::array<std::uint64_t, 2> words = {corner.position | std::uint64_t{corner.uv} << 32,
@@ -105,6 +111,27 @@ class ObjReader {
       fan[1] = vertex;
     }
     if (count < 3) text_.fail("face must have at least 3 corners (got " + std::to_string(count) + ")");
+    if (count > 3)
+      fans_.push_back(
+          {static_cast<std::uint32_t>(triangles_.size() - (count - 2)), static_cast<std::uint32_t>(count)});
+  }
+
+  void count_skipped(std::string_view keyword) {
+    if (keyword == "usemtl") has_materials_ = true;
+    if (keyword == "l") ++lines_;
+    if (keyword == "p") ++points_;
+    if (keyword == "curv" || keyword == "surf") ++free_forms_;
+  }
+
+  void add_notes(TriangleMesh& mesh) const {
+    const auto add = [&](std::size_t count, const char* what) {
+      if (count > 0) mesh.notes.push_back(grouped(count) + what);
+    };
+    if (has_materials_) mesh.notes.push_back("materials are not modelled");
+    add(lines_, " lines are not rendered");
+    add(points_, " points are not rendered");
+    add(free_forms_, " free-form curves and surfaces are not rendered");
+    add(lost_uvs_, " texture indices without texture coordinates were ignored");
   }
 
   TriangleMesh build() {
@@ -119,6 +146,8 @@ class ObjReader {
     fill(mesh.positions, positions_, &Corner::position);
     fill(mesh.normals, normals_, &Corner::normal);
     fill(mesh.uvs, uvs_, &Corner::uv);
+    divide_polygons(fans_, mesh);
+    add_notes(mesh);
     return mesh;
   }
 
@@ -129,6 +158,9 @@ class ObjReader {
   std::vector<Corner> corners_;  // vertices of the mesh
   IndexTable table_;             // finds equal corners in corners_
   std::vector<std::array<std::uint32_t, 3>> triangles_;
+  std::vector<Fan> fans_;  // polygons with more than three corners
+  bool has_materials_ = false;
+  std::size_t lines_ = 0, points_ = 0, free_forms_ = 0, lost_uvs_ = 0;
 };
 
 }  // namespace

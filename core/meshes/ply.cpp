@@ -2,6 +2,7 @@
 
 #include "core/base/task_scope.h"
 #include "core/meshes/ply_body.h"
+#include "core/meshes/polygons.h"
 
 namespace orrery {
 namespace {
@@ -26,6 +27,8 @@ bool is_polygon(const PlyProperty& property) {
   return property.count_type && (property.name == "vertex_indices" || property.name == "vertex_index");
 }
 
+bool is_colour(const PlyProperty& property) { return property.name.ends_with("red") || property.name == "r"; }
+
 template <class Body>
 class PlyReader {
  public:
@@ -43,10 +46,21 @@ class PlyReader {
       else
         for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i) skip_row(element);
     }
+    divide_polygons(fans_, mesh_);
+    add_notes();
     return std::move(mesh_);
   }
 
  private:
+  void add_notes() {
+    if (header_.skipped_lines > 0)
+      mesh_.notes.push_back(grouped(header_.skipped_lines) + " header lines without a keyword were skipped");
+    for (const PlyElement& element : header_.elements)
+      if (element.name == "vertex" && std::any_of(element.properties.begin(), element.properties.end(),
+                                                  [](const PlyProperty& p) { return is_colour(p); }))
+        mesh_.notes.push_back("vertex colours are not modelled");
+  }
+
   void count_vertices() {
     const auto is_vertex = [](const PlyElement& element) { return element.name == "vertex"; };
     const auto count = std::count_if(header_.elements.begin(), header_.elements.end(), is_vertex);
@@ -167,6 +181,9 @@ class PlyReader {
       mesh_.triangles.push_back(fan);
       fan[1] = fan[2];
     }
+    if (count > 3)
+      fans_.push_back({static_cast<std::uint32_t>(mesh_.triangles.size() - (count - 2)),
+                       static_cast<std::uint32_t>(count)});
   }
 
   std::uint64_t list_length(const PlyProperty& property) {
@@ -200,6 +217,7 @@ class PlyReader {
   std::uint64_t vertices_ = 0;  // vertex count of the header, because faces may precede vertices
   bool has_normals_ = false, has_uvs_ = false;
   TriangleMesh mesh_;
+  std::vector<Fan> fans_;  // polygons with more than three corners
 };
 
 }  // namespace

@@ -70,13 +70,13 @@ PlyHeader read_ply_header(std::string_view bytes) {
   TextReader text(bytes);
   std::optional<PlyEncoding> encoding;
   std::vector<PlyElement> elements;
-  std::size_t properties = 0;
+  std::size_t properties = 0, skipped_lines = 0;
   while (text.next_line()) {  // skips the line "ply"
     const std::string_view keyword = text.word_of_line();
     if (keyword == "end_header") {
       if (!encoding) text.fail("\"end_header\" must follow a line \"format\"");
       text.end_text(bytes.starts_with("ply\r") && !bytes.starts_with("ply\r\n"));
-      return {*encoding, std::move(elements), text};
+      return {*encoding, std::move(elements), text, skipped_lines};
     }
     if (keyword == "format") {
       encoding = read_encoding(text);
@@ -86,7 +86,11 @@ PlyHeader read_ply_header(std::string_view bytes) {
       if (elements.empty()) text.fail("property must follow an element");
       elements.back().properties.push_back(read_property(text));
       ++properties;
-    } else if (keyword != "comment" && keyword != "obj_info" && !keyword.empty()) {
+    } else if (keyword == "comment" || keyword == "obj_info" || keyword.empty()) {
+      continue;
+    } else if (encoding && elements.empty()) {
+      ++skipped_lines;  // old exporters wrote comments without the keyword
+    } else {
       text.fail("must be a PLY header keyword (got " + excerpt(keyword) + ")");
     }
     if (properties + elements.size() > kMaxProperties)

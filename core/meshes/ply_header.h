@@ -30,7 +30,8 @@ struct PlyElement {
 struct PlyHeader {
   PlyEncoding encoding;
   std::vector<PlyElement> elements;
-  TextReader body;  // positioned at the first byte after the header
+  TextReader body;            // positioned at the first byte after the header
+  std::size_t skipped_lines;  // lines before the first element that begin with no keyword
 };
 
 // Reads the header of a PLY file (Turk, The PLY Polygon File Format, 1994). Throws InputError with the line

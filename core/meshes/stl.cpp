@@ -12,6 +12,7 @@ namespace {
 // Binary format, little-endian: 80 arbitrary bytes, the number of facets, then 12 floats and 2 bytes per
 // facet.
 constexpr std::size_t kHeader = 84, kFacet = 50, kCorner = 12;
+constexpr std::size_t kMaxTrailing = 4096;  // bytes after the last triangle, as some programs write
 
 std::uint32_t little_endian(const char* bytes) {
   std::uint32_t value = 0;
@@ -61,7 +62,10 @@ TriangleMesh read_binary(std::string_view bytes, const MeshLimits& limits) {
     }
     builder.add(corners);
   }
-  return builder.take();
+  TriangleMesh mesh = builder.take();
+  if (const std::size_t end = kHeader + count * kFacet; end < bytes.size())
+    mesh.notes.push_back(grouped(bytes.size() - end) + " bytes after the last triangle were skipped");
+  return mesh;
 }
 
 void expect(TextReader& text, std::string_view wanted) {
@@ -116,7 +120,8 @@ TriangleMesh read_ascii(std::string_view bytes, const MeshLimits& limits) {
 std::size_t binary_stl_triangles(std::string_view bytes) {
   if (bytes.size() <= kHeader) return 0;
   const std::size_t count = little_endian(bytes.data() + kHeader - 4);
-  return bytes.size() == kHeader + count * kFacet ? count : 0;
+  const std::size_t end = kHeader + count * kFacet;
+  return bytes.size() >= end && bytes.size() - end <= kMaxTrailing ? count : 0;
 }
 
 TriangleMesh read_stl(std::string_view bytes, const MeshLimits& limits) {

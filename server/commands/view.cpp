@@ -1,7 +1,9 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "core/load/asset_files.h"
 #include "core/load/load.h"
 #include "core/load/scene_file.h"
 #include "core/model/asset_source.h"
@@ -75,7 +77,10 @@ View view_of(const ViewFlags& flags, const RenderRequest& request) {
   const std::string& path = flags.render.render.scene;
   const std::string bytes = read_file(path);
   try {
-    View view{ReadModel(read_mesh(bytes)), {}};
+    const bool is_file = path != "-";
+    View view{ReadModel(read_mesh(bytes, {}, is_file ? files_beside(path) : ReadNearby())), {}};
+    for (const std::string& note : view.model.mesh().notes)
+      std::cerr << "orrery: warning: " << path << ": " << note << "\n";
     const std::string name = path == "-" ? "model" : std::filesystem::path(path).filename().string();
     const auto [width, height] = view_size(request);
     view.scene =

@@ -58,5 +58,35 @@ TEST_F(ViewCommand, RejectsBadOptions) {
   EXPECT_NE(broken.err.find("b.stl: "), std::string::npos) << broken.err;
 }
 
+// Buffers of a .gltf file are read from its folder, and from nowhere else.
+TEST_F(ViewCommand, ReadsBuffersBesideModel) {
+  test::Gltf gltf = test::gltf_of(test::cube());
+  fs::create_directories(folder_ / "models/parts");
+  std::ofstream(folder_ / "models/parts/cube 1.bin", std::ios::binary) << gltf.binary();
+  std::ofstream(folder_ / "secret.bin", std::ios::binary) << gltf.binary();
+  fs::create_symlink("../secret.bin", folder_ / "models/link.bin");
+  const auto view_with = [&](const std::string& uri) {
+    return run("view " + write("models/a.gltf", gltf.with_file(test::kOneMesh, uri)) +
+               " --samples 1 --width 8 --height 8 -o " + file("a.png"));
+  };
+  EXPECT_EQ(view_with("parts/cube%201.bin").status, 0);
+  for (const std::string uri : {"../secret.bin", "link.bin", "parts/../../secret.bin"}) {
+    const Outcome result = view_with(uri);
+    EXPECT_EQ(result.status, 2);
+    EXPECT_NE(result.err.find("/buffers/0/uri: must be a file in the folder of the model or below it"),
+              std::string::npos)
+        << result.err;
+  }
+  EXPECT_NE(view_with(file("secret.bin")).status, 0) << "an absolute path";
+}
+
+TEST_F(ViewCommand, WarnsAboutContentsThatAreNotModelled) {
+  const Outcome result =
+      run("view " + write("a.obj", "mtllib a.mtl\nusemtl a\n" + test::obj_of(test::cube())) +
+          " --samples 1 --width 8 --height 8 -o -");
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(result.err, "orrery: warning: " + file("a.obj") + ": materials are not modelled\n");
+}
+
 }  // namespace
 }  // namespace orrery

@@ -71,8 +71,8 @@ TEST(Gltf, RejectsInvalidPrimitives) {
 TEST(Gltf, RejectsExternalFilesAndRequiredExtensions) {
   for (const char* uri : {"mesh.bin", "/etc/passwd", "http://elsewhere/mesh.bin", "data:text/plain,abc"})
     EXPECT_THAT(with_data(std::string(R"({"byteLength":36,"uri":")") + uri + "\"}", kView, kAccessor),
-                HasSubstr("/buffers/0/uri: must be a data: URI in base64, because external files are not "
-                          "supported (got \"" +
+                HasSubstr("/buffers/0/uri: must be a data: URI in base64, because other files are not read "
+                          "(got \"" +
                           std::string(uri)));
   EXPECT_THAT(with(kMesh + R"("nodes":[{"mesh":0}],"extensionsRequired":["KHR_draco_mesh_compression"])"),
               HasSubstr("/extensionsRequired/0: must be an extension that does not change geometry"));
@@ -108,15 +108,24 @@ TEST(Gltf, RejectsRangesOutsideBuffer) {
                 HasSubstr("byteStride must be from 12 to 252 (got "));
   EXPECT_THAT(with_data(kBuffer, kView, R"({"bufferView":0,"componentType":5124,"count":3,"type":"VEC3"})"),
               HasSubstr("/accessors/0/componentType: must be a component type"));
-  EXPECT_THAT(with_data(kBuffer, kView,
-                        R"({"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","sparse":{}})"),
-              HasSubstr("/accessors/0: sparse accessors are not supported"));
+  const auto sparse = [](const std::string& text) {
+    return with_data(
+        kBuffer, kView,
+        R"({"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","sparse":)" + text + "}");
+  };
+  EXPECT_EQ(sparse("{}"), "/accessors/0/sparse: missing key \"indices\"");
+  const std::string values = R"(,"values":{"bufferView":0}})";
+  EXPECT_THAT(sparse(R"({"count":9,"indices":{"bufferView":0,"componentType":5125})" + values),
+              HasSubstr("/accessors/0/sparse/values: must have at least 1 element of 12 bytes"));
+  EXPECT_THAT(with_data(kBuffer, kView, R"({"componentType":5126,"count":99999999999,"type":"VEC3"})"),
+              HasSubstr("/accessors/0: count must be from 1 to 10,000,000 (got 99999999999)"));
 }
 
 TEST(Gltf, RejectsInvalidDocuments) {
   EXPECT_THAT(problem("{"), HasSubstr("JSON syntax error at byte 2"));
   EXPECT_EQ(problem("{}"), "/: missing key \"asset\"");
-  EXPECT_EQ(problem(R"({"asset":{"version":"1.0"}})"), "/asset/version: must be \"2.0\" (got \"1.0\")");
+  EXPECT_EQ(problem(R"({"asset":{"version":"1.0"}})"),
+            "/asset/version: must be \"2.0\" (got \"1.0\"); gltf-pipeline or Blender convert older files");
   EXPECT_THAT(problem(R"({"nodes":)" + std::string(100'000, '[')),
               HasSubstr("JSON is nested too deeply (limit 32 levels)"));
   std::string many = R"({"nodes":[0)";

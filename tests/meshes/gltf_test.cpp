@@ -22,6 +22,22 @@ TriangleMesh placed(const std::string& nodes) {
   return read_mesh(
       gltf.glb(R"("meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":1}}]}],)" + nodes));
 }
+// Returns the members of a document with one mesh, whose positions are accessor `positions`.
+std::string one_mesh_of(const std::string& positions) {
+  return R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":)" + positions + "}}]}]";
+}
+// Replaces a part of a .glb file by a longer one, and corrects the lengths in its header.
+std::string replaced(const std::string& glb, const std::string& part, const std::string& by) {
+  std::string json = glb.substr(20, glb.find("BIN") - 24);
+  const std::string binary = glb.substr(glb.find("BIN") - 4);
+  json.replace(json.find(part), part.size(), by);
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  std::string out = "glTF";
+  append(out, std::uint32_t{2});
+  append(out, static_cast<std::uint32_t>(20 + json.size() + binary.size()));
+  append(out, static_cast<std::uint32_t>(json.size()));
+  return out + "JSON" + json + binary;
+}
 void expect_near(const Vec3d& a, const Vec3d& b, double bound = 1e-15) {
   EXPECT_LE(length(a - b), bound) << a.x << ' ' << a.y << ' ' << a.z;
 }
@@ -141,6 +157,65 @@ TEST(Gltf, DropsAttributesMissingInSomePrimitives) {
                R"({"attributes":{"POSITION":0}},{"attributes":{"POSITION":0,"NORMAL":1}}]}])"));
   EXPECT_EQ(mesh.positions.size(), 9u);
   EXPECT_TRUE(mesh.normals.empty());
+}
+
+// A sparse accessor replaces elements of a buffer view, or of zeros without one.
+TEST(Gltf, ReadsSparseAccessors) {
+  const auto places = [](const char* view) {
+    Gltf gltf;
+    gltf.positions(kTriangle);
+    gltf.add<std::uint16_t>({1, 2}, "SCALAR", 5123);
+    gltf.positions({{5, 0, 0}, {0, 7, 0}});
+    const std::string sparse = gltf.glb(one_mesh_of("0"));
+    return read_mesh(
+               replaced(sparse, R"({"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"})",
+                        std::string("{") + view +
+                            R"("componentType":5126,"count":3,"type":"VEC3","sparse":{"count":2,)"
+                            R"("indices":{"bufferView":1,"componentType":5123},"values":{"bufferView":2}}})"))
+        .positions;
+  };
+  EXPECT_EQ(places(R"("bufferView":0,)"), (std::vector<Vec3d>{{0, 0, 0}, {5, 0, 0}, {0, 7, 0}}));
+  EXPECT_EQ(places(""), (std::vector<Vec3d>{{0, 0, 0}, {5, 0, 0}, {0, 7, 0}}));
+}
+
+TEST(Gltf, ReadsBuffersFromOtherFiles) {
+  Gltf gltf;
+  gltf.positions(kTriangle);
+  const std::string text = gltf.with_file(one_mesh_of("0"), "the%20buffer.bin");
+  std::vector<std::string> asked;
+  const ReadNearby nearby = [&](const std::string& name) {
+    asked.push_back(name);
+    return gltf.binary();
+  };
+  EXPECT_EQ(read_mesh(text, {}, nearby).positions, kTriangle);
+  EXPECT_EQ(asked, std::vector<std::string>{"the buffer.bin"});
+  EXPECT_THAT(problem(text),
+              HasSubstr("/buffers/0/uri: must be a data: URI in base64, because other files are "
+                        "not read (got \"the%20buffer.bin\"); a .glb file contains its buffers"));
+  const auto error_of = [](const std::string& file, const ReadNearby& read) -> std::string {
+    try {
+      read_mesh(file, {}, read);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  const ReadNearby missing = [](const std::string& name) -> std::string {
+    throw InputError("", "cannot read " + name);
+  };
+  EXPECT_THAT(error_of(text, missing), HasSubstr("/buffers/0/uri: cannot read the buffer.bin"));
+  EXPECT_THAT(error_of(gltf.with_file(one_mesh_of("0"), "http://host/b.bin"), nearby),
+              HasSubstr("must be a data: URI in base64, or the name of a file"));
+}
+
+TEST(Gltf, NotesContentsThatAreNotModelled) {
+  Gltf gltf;
+  gltf.positions(kTriangle);
+  const TriangleMesh mesh = read_mesh(
+      gltf.glb(one_mesh_of("0") +
+               R"(,"materials":[{},{}],"extensionsUsed":["KHR_materials_sheen","KHR_mesh_quantization"])"));
+  EXPECT_EQ(mesh.notes, (std::vector<std::string>{"2 materials are not modelled",
+                                                  "extension \"KHR_materials_sheen\" is not modelled"}));
 }
 
 }  // namespace

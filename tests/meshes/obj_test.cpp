@@ -94,9 +94,28 @@ TEST(Obj, ReportsLineOfErrors) {
             "line 5: v of a corner must be from 1 to 4 or -1 to -4 (got 4294967299)");
   EXPECT_EQ(with("f 1 2 99999999999999999999"),
             "line 5: v of a corner must be an integer (got \"99999999999999999999\")");
-  EXPECT_EQ(with("f 1/1 2 3"), "line 5: vt of a corner must refer to an earlier vt line (got 1)");
+  EXPECT_EQ(with("f 1//1 2 3"), "line 5: vn of a corner must refer to an earlier vn line (got 1)");
   EXPECT_EQ(with("f 1/1/1/1 2 3"), "line 5: corner must be position/uv/normal (got \"1/1/1/1\")");
   EXPECT_EQ(with("f \\\n1 2 x"), "line 6: v of a corner must be an integer (got \"x\")");
+}
+
+TEST(Obj, ReadsUtf16) {
+  for (const std::endian order : {std::endian::little, std::endian::big})
+    EXPECT_EQ(corners_of(read_mesh(utf16_of(obj_of(cube()), order))), corners_of(cube()));
+}
+
+TEST(Obj, IgnoresTextureIndicesWithoutCoordinates) {
+  const TriangleMesh mesh = read_mesh("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1 2/2 3/3\n");
+  EXPECT_EQ(mesh.triangles.size(), 1u);
+  EXPECT_EQ(mesh.notes,
+            std::vector<std::string>{"3 texture indices without texture coordinates were ignored"});
+}
+
+TEST(Obj, NotesContentsThatAreNotModelled) {
+  const TriangleMesh mesh =
+      read_mesh("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\nl 1 2\nl 2 3\np 1\n");
+  EXPECT_EQ(mesh.notes, (std::vector<std::string>{"materials are not modelled", "2 lines are not rendered",
+                                                  "1 points are not rendered"}));
 }
 
 }  // namespace

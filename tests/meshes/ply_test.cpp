@@ -120,7 +120,8 @@ TEST(Ply, ReportsLineOfHeaderErrors) {
   EXPECT_THAT(problem("ply\n"), HasSubstr("must be \"end_header\" (got the end of the file)"));
   EXPECT_THAT(problem("ply\nend_header\n"),
               HasSubstr("line 2: \"end_header\" must follow a line \"format\""));
-  EXPECT_THAT(ascii("elephant 3\n"), HasSubstr("line 3: must be a PLY header keyword (got \"elephant\")"));
+  EXPECT_THAT(ascii("element vertex 0\nelephant 3\n"),
+              HasSubstr("line 4: must be a PLY header keyword (got \"elephant\")"));
   EXPECT_THAT(ascii("element vertex -1\n"), HasSubstr("must be at least 0 (got -1)"));
   EXPECT_THAT(ascii("element vertex many\n"),
               HasSubstr("number of elements must be an integer (got \"many\")"));
@@ -182,6 +183,16 @@ TEST(Ply, ReportsPositionOfBodyErrors) {
   for (int i = 0; i < 3; ++i) append(bytes, 0);
   EXPECT_THAT(problem(bytes),
               HasSubstr("coordinates must be at most 1e+12 m in magnitude (got (0, inf, 0) for vertex 0)"));
+}
+
+TEST(Ply, SkipsHeaderLinesWithoutKeyword) {
+  std::string bytes = ply_of(cube());
+  bytes.replace(bytes.find("comment made"), 7, "Created");
+  const TriangleMesh mesh = read_mesh(bytes);
+  EXPECT_EQ(corners_of(mesh), corners_of(cube()));
+  EXPECT_EQ(mesh.notes, std::vector<std::string>{"1 header lines without a keyword were skipped"});
+  bytes.insert(bytes.find("property"), "Created again\n");
+  EXPECT_NE(problem(bytes).find("must be a PLY header keyword (got \"Created\")"), std::string::npos);
 }
 
 }  // namespace

@@ -68,5 +68,12 @@ TEST(Stl, ReportsPositionOfErrors) {
   EXPECT_EQ(problem("solid\nendsolid\nfacet\n"), "line 3: must be \"solid\" (got \"facet\")");
 }
 
+TEST(Stl, SkipsBytesAfterLastTriangle) {
+  const TriangleMesh mesh = read_mesh(binary_stl_of(cube()) + "made by a program");
+  EXPECT_EQ(corners_of(mesh), corners_of(cube()));
+  EXPECT_EQ(mesh.notes, std::vector<std::string>{"17 bytes after the last triangle were skipped"});
+  EXPECT_EQ(problem(binary_stl_of(cube()) + std::string(4097, ' ')).find("accepted"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace orrery::test

@@ -69,6 +69,14 @@ inline std::string obj_of(const TriangleMesh& mesh) {
   return out;
 }
 
+// Returns ASCII text as UTF-16 with a byte order mark.
+inline std::string utf16_of(const std::string& text, std::endian order) {
+  std::string out;
+  append(out, std::uint16_t{0xfeff}, order);
+  for (const char c : text) append(out, static_cast<std::uint16_t>(static_cast<unsigned char>(c)), order);
+  return out;
+}
+
 inline std::string ply_header(const std::string& format, std::size_t vertices, std::size_t faces) {
   return "ply\nformat " + format + " 1.0\ncomment made by a test\nelement vertex " +
          std::to_string(vertices) + "\nproperty float x\nproperty double y\nproperty float z\nelement face " +
@@ -162,6 +170,11 @@ class Gltf {
   std::string gltf(const std::string& rest) const {
     return json(rest, ",\"uri\":\"data:application/octet-stream;base64," + base64_of(binary_) + '"');
   }
+  // Returns the document with its buffer, binary(), in another file.
+  std::string with_file(const std::string& rest, const std::string& uri) const {
+    return json(rest, ",\"uri\":\"" + uri + '"');
+  }
+  const std::string& binary() const { return binary_; }
   std::string glb(const std::string& rest) const {
     std::string text = json(rest, "");
     text.resize((text.size() + 3) / 4 * 4, ' ');
