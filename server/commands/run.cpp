@@ -16,14 +16,13 @@
 namespace orrery {
 namespace {
 
-constexpr auto kCommands = {add_render,  add_view,      add_orbit, add_check,   add_explain,
-                            add_chart,   add_history,   add_audit, add_catalog, add_schema,
-                            add_openapi, add_stability, add_serve, add_token,   add_help};
+constexpr auto kCommands = {add_render,    add_view,    add_inspect, add_orbit,   add_check,  add_explain,
+                            add_chart,     add_history, add_audit,   add_catalog, add_schema, add_openapi,
+                            add_stability, add_serve,   add_token,   add_help};
 
 constexpr const char* kProgramExamples = R"(
 Examples:
   orrery render scenes/paper.json -o paper.png
-  orrery serve                                # page on http://127.0.0.1:8080
 Exit status: 0 success, 1 failure, 2 bad input, 3 missed budget, 130 stopped
 )";
 

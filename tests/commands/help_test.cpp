@@ -14,10 +14,10 @@
 namespace orrery {
 namespace {
 
-constexpr const char* kCommandNames[] = {"render",    "view",  "orbit",   "check",  "explain",
-                                         "chart",     "audit", "catalog", "schema", "openapi",
+constexpr const char* kCommandNames[] = {"render",    "view",  "inspect", "history", "orbit",  "check",
+                                         "explain",   "chart", "audit",   "catalog", "schema", "openapi",
                                          "stability", "serve", "token",   "help"};
-constexpr const char* kImageCommands[] = {"render", "orbit", "explain", "chart", "audit"};
+constexpr const char* kImageCommands[] = {"render", "view", "history", "orbit", "explain", "chart", "audit"};
 
 struct HelpRun {
   int status;

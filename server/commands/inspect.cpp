@@ -1,0 +1,113 @@
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "core/base/shorten.h"
+#include "core/load/asset_files.h"
+#include "core/load/scene_file.h"
+#include "core/meshes/inspection.h"
+#include "core/params/params.h"
+#include "server/commands/commands.h"
+#include "server/commands/help_layout.h"
+
+namespace orrery {
+namespace {
+
+constexpr const char* kInspectExamples = R"(
+Examples:
+  orrery inspect part.stl
+  orrery inspect chair.glb --json
+
+Prints size, triangles, whether the mesh is watertight, and what the file
+contains that is not modelled. Lengths are in the units of the file.
+)";
+
+struct InspectOptions {
+  std::string model;
+  bool json = false;
+};
+
+struct Model {
+  MeshFormat format;
+  std::size_t bytes;
+  TriangleMesh mesh;
+};
+
+Model read_model(const std::string& path) {
+  const std::string bytes = read_file(path);
+  const bool is_file = path != "-";
+  try {
+    return {mesh_format(bytes), bytes.size(),
+            read_mesh(bytes, {}, is_file ? files_beside(path) : ReadNearby())};
+  } catch (const InputError& error) {
+    throw BadScene(is_file ? path : "standard input", error);
+  }
+}
+
+nlohmann::ordered_json numbers(const Vec3d& v) { return {v.x, v.y, v.z}; }
+
+nlohmann::ordered_json inspection_json(const Model& model, const MeshInspection& found) {
+  return {{"format", name_of(model.format)},
+          {"bytes", model.bytes},
+          {"vertices", model.mesh.positions.size()},
+          {"triangles", model.mesh.triangles.size()},
+          {"triangles_without_area", found.triangles_without_area},
+          {"min", numbers(found.bounds.lo)},
+          {"max", numbers(found.bounds.hi)},
+          {"watertight", found.watertight},
+          {"area", found.area},
+          {"volume", found.watertight ? nlohmann::ordered_json(found.volume) : nullptr},
+          {"normals", !model.mesh.normals.empty()},
+          {"texture_coordinates", !model.mesh.uvs.empty()},
+          {"notes", model.mesh.notes}};
+}
+
+std::string row(const char* name, const std::string& text) {
+  std::string line(name);
+  line.resize(12, ' ');
+  return line + text + "\n";
+}
+std::string text_of(const Vec3d& v) {
+  return number_text(v.x) + ", " + number_text(v.y) + ", " + number_text(v.z);
+}
+
+std::string inspection_text(const Model& model, const MeshInspection& found) {
+  const TriangleMesh& mesh = model.mesh;
+  const Vec3d size = found.bounds.hi - found.bounds.lo;
+  std::string text =
+      row("format", std::string(name_of(model.format)) + ", " + grouped(model.bytes) + " bytes");
+  text += row("triangles", grouped(mesh.triangles.size()) +
+                               (found.triangles_without_area > 0
+                                    ? ", " + grouped(found.triangles_without_area) + " of them without area"
+                                    : ""));
+  text += row("vertices", grouped(mesh.positions.size()) + (mesh.normals.empty() ? "" : ", with normals") +
+                              (mesh.uvs.empty() ? "" : ", with texture coordinates"));
+  text += row("size", number_text(size.x) + " x " + number_text(size.y) + " x " + number_text(size.z));
+  text += row("box", text_of(found.bounds.lo) + " to " + text_of(found.bounds.hi));
+  text += row("watertight", found.watertight ? "yes, volume " + number_text(found.volume) : "no");
+  text += row("area", number_text(found.area));
+  for (const std::string& note : mesh.notes) text += row("note", note);
+  return text;
+}
+
+int inspect(const InspectOptions& options) {
+  const Model model = read_model(options.model);
+  const MeshInspection found = inspect_mesh(model.mesh);
+  std::cout << (options.json ? inspection_json(model, found).dump(2) + "\n" : inspection_text(model, found));
+  return kDone;
+}
+
+}  // namespace
+
+Command add_inspect(CLI::App& root) {
+  const auto options = std::make_shared<InspectOptions>();
+  CLI::App* app = root.add_subcommand("inspect", "Print size, triangles and contents of a model");
+  app->footer(kInspectExamples);
+  app->add_option("MODEL", options->model, "OBJ, PLY, STL or glTF file, or - for standard input")
+      ->required()
+      ->group("Arguments");
+  app->add_flag("--json", options->json, "Print JSON")->group("Output");
+  return {app, [options] { return inspect(*options); }};
+}
+
+}  // namespace orrery
