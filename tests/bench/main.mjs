@@ -15,6 +15,7 @@ import { MOTION } from "./motion.mjs";
 import { NOISE } from "./noise.mjs";
 import { ORBIT_HTTP } from "./orbit_http.mjs";
 import { PAPER_VS_POVRAY } from "./paper_vs_povray.mjs";
+import { SCAN_LINE } from "./scan_line.mjs";
 import { measureService } from "./service.mjs";
 import { SLOW_CLIENTS } from "./slow_clients.mjs";
 import { STAGES } from "./stages.mjs";
@@ -26,7 +27,7 @@ import { REPORTS as STRUCTURE_REPORTS } from "./structures.mjs";
 //   reach, aim: required and desired ratio (null: none)
 //   needs: required programs
 //   start() -> {ours(), theirs(), stop(), remark}. One call of ours() or theirs() is one run: {cost, cpuS}.
-const BENCHMARKS = [NOISE, PAPER_VS_POVRAY, FLAKE_VS_POVRAY, ORBIT_HTTP, ...STAGES, ...MOTION];
+const BENCHMARKS = [NOISE, PAPER_VS_POVRAY, FLAKE_VS_POVRAY, ORBIT_HTTP, ...STAGES, ...MOTION, ...SCAN_LINE];
 
 const REPORTS = [EMBREE, CYCLES, CYCLES_THRESHOLD, BUDGETS, ...STRUCTURE_REPORTS, CANCEL, DRAG, SLOW_CLIENTS];
 const ALL = [...BENCHMARKS, ...REPORTS];

@@ -64,4 +64,13 @@ export const systemFaults = [
     target: "test_lighting",
     tests: ["Subsurface.SlabMatchesDiscreteOrdinates"],
   },
+  {
+    fault: 16,
+    about: "scan line draws coincident layers of small triangles once",
+    file: "core/raster/tile_raster.cpp",
+    from: "nearness == limit_[slot] && number <= limit_number_[slot]",
+    to: "nearness == limit_[slot] && number >= 0",
+    target: "test_raster",
+    tests: ["Samples/VisibleTriangles.EqualThoseOfExhaustiveSearch/0"],
+  },
 ];

@@ -151,13 +151,16 @@ TEST(Screen, DrawsStoredAndCopiedMeshesEqually) {
       'materials': {'red': {'type': 'lambert', 'kd': null, 'ka': null, 'emission': [1, 0.1, 0]},
                     'green': {'type': 'lambert', 'kd': null, 'ka': null, 'emission': [0, 0.9, 0.2]}}})"));
   Json objects = Json::array(
-      {mesh,
-       {{"type", "sphere"}, {"center", {0.5, 0, 0}}, {"radius", 0.7}},
-       {{"type", "rectangle"}, {"corner", {-2, 0, 0.2}}, {"edge_u", {1, 0, 0}}, {"edge_v", {0, 1, 0}}},
+      {json("{'type': 'sphere', 'center': [0.5, 0, 0], 'radius': 0.7, 'material': 'green'}"), mesh,
+       json(
+           "{'type': 'triangle', 'vertices': [[-2, 0, 0.2], [-1, 0, 0.2], [-1, 1, 0.2]], 'material': 'red'}"),
        mesh});
+  const Json speck =
+      json("{'type': 'triangle', 'vertices': [[0, 0, 3], [0.1, 0, 3], [0, 0.1, 3]], 'material': 'green'}");
+  for (int i = 0; i < 500; ++i) objects.push_back(speck);  // numbered before the meshes
   for (Json& position : objects[3]["positions"]) position[2] = position[2].get<double>() + 0.3;
-  objects[0]["material"] = objects[2]["material"] = "red";
-  objects[1]["material"] = objects[3]["material"] = "green";
+  objects[1]["material"] = "red";
+  objects[3]["material"] = "green";
   scene["objects"] = objects;
   Json copied = scene;
   copied["objects"] = Json::array();
