@@ -74,9 +74,7 @@ LaneGroups ScanLine<T>::find_vertices(const LaneGroups& groups) {
       Facets::Numbers triangles;
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
         triangles[lane] = raster_.triangle(part.slots[lane]);
-        if (part.met[lane])
-          v.hits.primitive[i + static_cast<int>(lane)] =
-              screen_.primitive(triangles[lane]);
+        if (part.met[lane]) v.hits.primitive[i + static_cast<int>(lane)] = screen_.primitive(triangles[lane]);
       }
       if (needs_surfaces) put_surfaces(i, facets_of(triangles), raster_.weights(part.slots), part.met);
     }
@@ -201,8 +199,7 @@ void ScanLine<T>::shade_batch(std::size_t first, std::size_t last) {
       met[lane] = point < last;
       points[lane] = &points_[std::min(point, last - 1)];
       triangles[lane] = points[lane]->triangle;
-      if (met[lane])
-        v.hits.primitive[i + static_cast<int>(lane)] = screen_.primitive(triangles[lane]);
+      if (met[lane]) v.hits.primitive[i + static_cast<int>(lane)] = screen_.primitive(triangles[lane]);
     }
     Facets::Weights weights;
     for (std::size_t k = 0; k < 3; ++k)
