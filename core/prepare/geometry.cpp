@@ -192,8 +192,7 @@ std::shared_ptr<const Geometry<T>> make_lighting(std::shared_ptr<const Scene> sc
 
 template <class T>
 AcceleratorFacts facts_of(const World<T>& world) {
-  if (world.screen)
-    return {.bytes = world.screen->bytes(), .references = world.screen->surfaces.size()};
+  if (world.screen) return {.bytes = world.screen->bytes(), .references = world.screen->surfaces.size()};
   AcceleratorFacts facts = world.accelerator->facts();
   int deepest = 0;
   for (const auto& model : world.geometry->models) {

@@ -61,7 +61,7 @@ class ChunkBuilder {
   const int width_, height_;
   const SampleRange samples_;
   const Screen::Block* block_ = nullptr;
-  const ScreenVertex* vertices_ = nullptr;  // of the block
+  const ScreenVertex* vertices_ = nullptr;  // vertices of the block
   Unsorted<Screen::Number> triangles_;
   Unsorted<Screen::Fragment> fragments_;
 };

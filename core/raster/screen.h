@@ -44,7 +44,7 @@ struct Strided {
 template <class X>
 struct ByTile {
   std::vector<X> elements;
-  std::vector<std::uint32_t> first;  // of tile `first_tile` and the next ones: index in `elements`
+  std::vector<std::uint32_t> first;  // indices in `elements`, by tile from `first_tile` on
   std::uint32_t first_tile = 0;
 
   std::span<const X> of(std::uint32_t tile) const {
@@ -59,7 +59,7 @@ struct Screen {
   // Triangles that are stored in one place, and their vertices.
   struct Block {
     std::uint32_t first = 0, size = 0;  // number of the first triangle, and how many there are
-    std::size_t first_vertex = 0;       // of `positions`, in Screen::vertices
+    std::size_t first_vertex = 0;       // index of positions[0] in Screen::vertices
     Strided<std::array<std::uint32_t, 3>> corners = {};  // anticlockwise as seen from outside
     Strided<Vec3d> positions = {};
     Strided<Vec3d> normals = {};  // outward unit normals, or 0: that of the triangle. Null if all are 0
@@ -95,7 +95,7 @@ struct Screen {
   };
   std::shared_ptr<const Scene> scene;        // owns meshes of `surfaces`
   Tessellation surfaces;                     // in scene coordinates
-  std::vector<Block> blocks;                 // of `surfaces`, in their order
+  std::vector<Block> blocks;                 // triangles of `surfaces`, in their order
   std::unique_ptr<ScreenVertex[]> vertices;  // all vertices of `surfaces`, then those of its meshes
   std::size_t vertex_count = 0;
   std::vector<Chunk> chunks;  // kChunk triangle numbers each
