@@ -53,7 +53,7 @@ struct Tessellation {
   std::vector<Triangle> triangles;
   std::vector<Mesh> meshes;
   bool may_refer = false;  // whether sets may add to `meshes`, because they outlive this object
-  double error = 0;  // largest distance of a triangle from its surface, pixels
+  double error = 0;        // largest distance of a triangle from its surface, pixels
 
   std::uint32_t add(const Vec3d& position, const Vec3d& normal = {}) {
     vertices.push_back({position, normal});

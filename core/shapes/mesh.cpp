@@ -92,8 +92,7 @@ class MeshSet final : public ShapeSet {
   void tessellate(const TessellationView&, int first, Tessellation& out) const override {
     const bool no_normals = table_.normals.empty();
     if (out.may_refer && (no_normals || table_.normals.size() == table_.positions.size())) {
-      out.meshes.push_back(
-          {table_.positions, table_.normals, table_.triangles, first, out.triangles.size()});
+      out.meshes.push_back({table_.positions, table_.normals, table_.triangles, first, out.triangles.size()});
       return;
     }
     const auto first_vertex = static_cast<std::uint32_t>(out.vertices.size());
