@@ -217,7 +217,8 @@ Json view_scene(const TriangleMesh& mesh, MeshFormat format, const ModelReferenc
                       {"angle_degrees", kKeyWidth}}};
   scene["objects"] = {std::move(object)};
   add_ground(scene, options, axes, corners);
-  scene["render"] = {{"technique", "path"}, {"max_depth", 4}};
+  // In the open, sharing paths costs more than it gains.
+  scene["render"] = {{"technique", "path"}, {"max_depth", 4}, {"path_reuse", 1}};
   return scene;
 }
 

@@ -15,8 +15,11 @@ std::size_t bytes_of(const Texels& picture) { return picture.rgb.size() * sizeof
 
 std::size_t bytes_of(const AssetStore::Asset& asset) {
   constexpr std::size_t kEntry = 1024;  // overhead of an entry in bytes
+  std::size_t sum = kEntry + asset.bytes.size();
+  if (const auto* const mesh = std::get_if<AssetStore::Asset::Mesh>(&asset.content))
+    for (const std::string& note : mesh->notes) sum += sizeof note + note.size();
   const auto* const picture = std::get_if<AssetStore::Asset::Picture>(&asset.content);
-  return kEntry + asset.bytes.size() + (picture && picture->texels ? bytes_of(*picture->texels) : 0);
+  return sum + (picture && picture->texels ? bytes_of(*picture->texels) : 0);
 }
 
 // Returns the format of a mesh file. Throws InputError that lists the mesh and image formats, since an upload
@@ -39,8 +42,8 @@ decltype(AssetStore::Asset::content) content_of(const std::string& bytes, std::s
     return AssetStore::Asset::Picture{picture_format(bytes), width, height, std::move(texels)};
   }
   const MeshFormat format = format_of(bytes);
-  const TriangleMesh mesh = read_mesh(bytes);
-  return AssetStore::Asset::Mesh{format, mesh.positions.size(), mesh.triangles.size()};
+  TriangleMesh mesh = read_mesh(bytes);
+  return AssetStore::Asset::Mesh{format, mesh.positions.size(), mesh.triangles.size(), std::move(mesh.notes)};
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "core/model/asset_source.h"
 #include "server/base/lru.h"
@@ -17,6 +18,7 @@ class AssetStore final : public AssetSource {
     struct Mesh {
       MeshFormat format;
       std::size_t vertices, triangles;
+      std::vector<std::string> notes;  // see TriangleMesh::notes
     };
     struct Picture {
       PictureFormat format;

@@ -43,6 +43,7 @@ nlohmann::ordered_json json_of(const std::string& id, const AssetStore::Asset& a
   if (const auto* const mesh = std::get_if<AssetStore::Asset::Mesh>(&asset.content)) {
     json["vertices"] = mesh->vertices;
     json["triangles"] = mesh->triangles;
+    json["notes"] = mesh->notes;
   } else {
     const auto& picture = std::get<AssetStore::Asset::Picture>(asset.content);
     json["width"] = picture.width;

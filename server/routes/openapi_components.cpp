@@ -67,6 +67,8 @@ constexpr std::array kHeaders{
         "Id of the scene: the SHA-256 of its canonical JSON. The scene is cached at /v1/scenes/{id} unless "
         "stored scenes leave too little memory. While it is cached, it can be rendered again by this id"},
     Header{"Orrery-Asset-Id", "Id of the stored asset: the SHA-256 of its bytes"},
+    Header{"Orrery-Model-Notes", "Contents of the model that are not modelled, and repairs",
+           R"({"type": "string"})", false},
     Header{"Retry-After",
            "Seconds to wait before a retry. For a full queue: queued work divided by the measured throughput",
            R"({"type": "integer"})"},

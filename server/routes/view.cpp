@@ -25,8 +25,8 @@ ViewOptions read_view_query(const Request& request) {
   return read_view_options(document_of(std::move(given)));
 }
 
-MeshFormat format_of(const AssetStore::Asset& asset) {
-  if (const auto* const mesh = std::get_if<AssetStore::Asset::Mesh>(&asset.content)) return mesh->format;
+const AssetStore::Asset::Mesh& mesh_of(const AssetStore::Asset& asset) {
+  if (const auto* const mesh = std::get_if<AssetStore::Asset::Mesh>(&asset.content)) return *mesh;
   throw InputError("", "must be an OBJ, PLY, STL or glTF file (got an image)");
 }
 
@@ -50,12 +50,16 @@ Response post_view(App& app, Request& request) {
   app.require_open();
   RequestTrace trace;
   const AssetStore::AddResult added = app.add_asset("", request.body, caller_of(request));
-  const RenderOrder order = make_view_order(app, request, added.id, format_of(*added.asset), trace);
+  const AssetStore::Asset::Mesh& mesh = mesh_of(*added.asset);
+  const RenderOrder order = make_view_order(app, request, added.id, mesh.format, trace);
   const Rendered rendered = app.renders().render(order, trace);
   Response response = picture_response(kType, rendered, trace);
   set_content_location(response, kType, order.scene->scene(), *rendered.picture, request.prefix);
   response.set("Orrery-Scene-Id", order.scene->scene().id);
   response.set("Orrery-Asset-Id", added.id);
+  std::string notes;
+  for (const std::string& note : mesh.notes) notes += (notes.empty() ? "" : "; ") + note;
+  if (!notes.empty()) response.set("Orrery-Model-Notes", notes);
   return response.set("Cache-Control", "no-store");
 }
 
@@ -63,7 +67,7 @@ Response get_view(App& app, Request& request) {
   RequestTrace trace;
   const std::string& id = request.path_value("sha256");
   AssetStore::require_name(id);
-  const RenderOrder order = make_view_order(app, request, id, format_of(*app.assets().find(id)), trace);
+  const RenderOrder order = make_view_order(app, request, id, mesh_of(*app.assets().find(id)).format, trace);
   // A later version may frame and light models in another way, and the asset may be removed.
   return frame_response(app, request, order, trace, "no-cache");
 }
@@ -94,11 +98,12 @@ std::vector<Operation::Parameter> described_parameters(std::vector<Operation::Pa
 void add_view_routes(Router& router, App& app) {
   const Operation::Answer image{.status = 200,
                                 .description = "The image",
-                                .headers = {"Server-Timing", "Content-Location"},
+                                .headers = {"Content-Location"},
                                 .content = {{kType}},
                                 .has_results = true};
   Operation::Answer image_of_upload = image, image_of_url = image;
-  image_of_upload.headers.insert(image_of_upload.headers.end(), {"Orrery-Scene-Id", "Orrery-Asset-Id"});
+  image_of_upload.headers.insert(image_of_upload.headers.end(), {"Server-Timing", "Orrery-Scene-Id",
+                                                                 "Orrery-Asset-Id", "Orrery-Model-Notes"});
   image_of_url.headers.push_back("Cache-Control");
   const RouteBody body{.limit = {app.settings().asset_bytes, "asset_bytes"}, .require = refuse_compressed};
   router

@@ -65,7 +65,8 @@ void allow_origin(const Request& request, const std::vector<std::string>& origin
   if (!is_listed(request, origins)) return;
   response.set("Access-Control-Allow-Origin", *request.header("Origin"));
   std::string names =
-      "Content-Location, ETag, Location, Orrery-Asset-Id, Orrery-Scene-Id, Retry-After, Server-Timing, "
+      "Content-Location, ETag, Location, Orrery-Asset-Id, Orrery-Model-Notes, Orrery-Scene-Id, Retry-After, "
+      "Server-Timing, "
       "X-Request-ID";
   for (const std::string_view name : exposed) names.append(", ").append(name);
   response.set("Access-Control-Expose-Headers", std::move(names));

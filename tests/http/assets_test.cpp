@@ -30,6 +30,7 @@ TEST_F(Assets, StoresAndReturnsMesh) {
   EXPECT_EQ(told.at("format"), "obj");
   EXPECT_EQ(told.at("triangles"), 4);
   EXPECT_EQ(told.at("vertices"), 4);
+  EXPECT_EQ(told.at("notes"), nlohmann::json::array());
   EXPECT_EQ(told.at("bytes"), kTetrahedron.size());
   const auto got = client_.Get(path);
   ASSERT_TRUE(got && got->status == 200);

@@ -154,7 +154,7 @@ TEST_F(Routes, LogsOnlyHealthProbesAtDebugLevel) {
 // Returns a body for the route that exceeds the memory limit of a client when parsed.
 std::string hostile_body(const Route& route) {
   std::string body;
-  if (route.pattern == "/v1/assets/{sha256}") {
+  if (route.pattern == "/v1/assets/{sha256}" || route.pattern == "/v1/view") {
     for (int i = 0; i < 1'200'000; ++i) body += "v 0 0 0\n";
     return body + "f 1 2 3\n";
   }

@@ -26,6 +26,9 @@ TEST_F(View, RendersUploadedModel) {
   ASSERT_TRUE(posted && posted->status == 200) << posted->body;
   EXPECT_TRUE(is_png(posted->body));
   EXPECT_EQ(posted->get_header_value("Orrery-Asset-Id"), sha256_hex(kTetrahedron));
+  EXPECT_FALSE(posted->has_header("Orrery-Model-Notes"));
+  EXPECT_EQ(post(kSmall, "usemtl red\n" + kTetrahedron + "l 1 2\n")->get_header_value("Orrery-Model-Notes"),
+            "materials are not modelled; 1 lines are not rendered");
   const auto by_url = client_.Get(path());
   ASSERT_TRUE(by_url && by_url->status == 200);
   EXPECT_EQ(by_url->body, posted->body);
