@@ -162,6 +162,7 @@ TEST_P(Scattering, IsReciprocal) {
     back.push_back(seen_from(b, through ? -side : side));
     back.back().light = a;
     if (through) back.back().normal = back.back().geometric = Vec3d(0, 0, -1);
+    there.back().t = back.back().t = 0;  // nothing is absorbed on the way to the surface
   }
   const auto forth = material.evaluated(there), reverse = material.evaluated(back);
   double worst = 0;
