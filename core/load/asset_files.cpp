@@ -11,16 +11,16 @@ namespace {
 namespace fs = std::filesystem;
 
 // Returns the path of a file in a folder or below it, with symbolic links resolved. Throws InputError if the
-// file is elsewhere or no regular file. `folder_name`: name of the folder in errors.
-fs::path path_within(const fs::path& given_folder, const std::string& name, const char* folder_name) {
+// file is elsewhere or no regular file. `owner`: "scene" or "model", for errors.
+fs::path path_within(const fs::path& given_folder, const std::string& name, const char* owner) {
   if (name.find('\0') != std::string::npos) throw InputError("", "file name must not contain NUL");
   std::error_code error;
   const fs::path folder = fs::canonical(given_folder.empty() ? "." : given_folder, error);
   const fs::path path = fs::canonical(folder / name, error);  // resolves symbolic links
   if (error) throw InputError("", "cannot read " + (given_folder / name).string() + ": " + error.message());
   if (std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first != folder.end())
-    throw InputError("", "must be a file in the folder of the " + std::string(folder_name) +
-                             " or below it (got " + name + ")");
+    throw InputError(
+        "", "must be a file in the " + std::string(owner) + "'s folder or below it (got " + name + ")");
   if (!fs::is_regular_file(path)) throw InputError("", "cannot read " + name + ": not a regular file");
   return path;
 }

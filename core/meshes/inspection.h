@@ -8,7 +8,7 @@ namespace orrery {
 // Measures of a mesh, in the units of its file.
 struct MeshInspection {
   std::size_t triangles_without_area = 0;
-  Boundsd bounds;           // of the corners of triangles
+  Boundsd bounds;           // bounds of the corners of triangles
   bool watertight = false;  // the triangles enclose a volume: see is_watertight()
   double area = 0;          // sum over the triangles
   double volume = 0;        // enclosed volume, negative if the fronts face inward; 0 unless watertight

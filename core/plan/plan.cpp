@@ -333,16 +333,14 @@ class Planner {
 
   void explain_rasterization() {
     plan_.shadows = false;
+    const bool in_image = *plan_.asked.interpolation == Interpolation::screen;
     decide("surfaces", "triangles",
            "curved surfaces are approximated to within " + number_text(*plan_.asked.tessellation_error) +
                " pixels",
            Bound::unknown());
     decide(
-        "interpolation",
-        *plan_.asked.interpolation == Interpolation::screen ? "linear in the image" : "linear in the scene",
-        *plan_.asked.interpolation == Interpolation::screen
-            ? "as specified; the incremental form, with perspective distortion"
-            : "perspective-correct");
+        "interpolation", in_image ? "linear in the image" : "linear in the scene",
+        in_image ? "as specified; the incremental form, with perspective distortion" : "perspective-correct");
     decide("shadows", "none", std::string(plan_.technique->name) + " does not model them; raycast does",
            Bound::unknown());
   }
@@ -492,8 +490,7 @@ RenderSettings settings_of(const Plan& plan) {
   RenderSettings settings = plan.asked;
   settings.accelerator = plan.accelerator->name;
   settings.precision = plan.double_precision ? Precision::double_precision : Precision::single_precision;
-  // The plan may have reduced the depth to 1 because of the position of the eye. The settings keep the
-  // requested depth.
+  // The plan may have reduced the depth to 1 because of the eye. The settings keep the requested depth.
   settings.max_depth = plan.max_depth == 0 ? 0 : *plan.asked.max_depth;
   settings.min_contribution = plan.min_contribution;
   return settings;

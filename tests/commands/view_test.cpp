@@ -73,7 +73,7 @@ TEST_F(ViewCommand, ReadsBuffersBesideModel) {
   for (const std::string uri : {"../secret.bin", "link.bin", "parts/../../secret.bin"}) {
     const Outcome result = view_with(uri);
     EXPECT_EQ(result.status, 2);
-    EXPECT_NE(result.err.find("/buffers/0/uri: must be a file in the folder of the model or below it"),
+    EXPECT_NE(result.err.find("/buffers/0/uri: must be a file in the model's folder or below it"),
               std::string::npos)
         << result.err;
   }
