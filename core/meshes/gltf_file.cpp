@@ -130,25 +130,10 @@ std::string decode_percent(const std::string& text) {
   return decoded;
 }
 
-// Returns the bytes of a data: URI, or of the file that the URI names.
-std::string bytes_of(const GltfValue& uri, const ReadNearby& nearby) {
-  const std::string& text = uri.text();
-  constexpr std::string_view kMark = ";base64,";
-  const std::size_t comma = text.find(',');
-  if (text.starts_with("data:") && comma != text.npos && text.substr(0, comma + 1).ends_with(kMark))
-    return decode_base64(std::string_view(text).substr(comma + 1), uri);
-  if (!nearby || text.starts_with("data:") || text.find("://") != text.npos)
-    uri.fail("must be a data: URI in base64" + std::string(nearby ? ", or the name of a file" : "") +
-             ", because other files are not read (got " + excerpt(text) +
-             "); a .glb file contains its buffers");
-  try {
-    return nearby(decode_percent(text));
-  } catch (const InputError& error) {
-    uri.fail(error.problems().front().detail);
-  }
-}
-
 std::size_t components_of(std::string_view type) { return type == "SCALAR" ? 1 : type == "VEC2" ? 2 : 3; }
+
+// Maximum size of all files that a file names.
+constexpr std::size_t kMaxFileBytes = std::size_t{1} << 30;
 
 // Maximum number of values of an accessor that is not in a buffer.
 constexpr std::uint64_t kMaxUnpacked = 30'000'000;
@@ -167,14 +152,37 @@ GltfFile::GltfFile(std::string_view bytes, const ReadNearby& nearby) : nearby_(n
   if (const auto buffers = root().find("buffers")) buffers_.resize(buffers->size());
 }
 
+std::string_view GltfFile::bytes_of(const GltfValue& uri) {
+  const std::string& text = uri.text();
+  constexpr std::string_view kMark = ";base64,";
+  const std::size_t comma = text.find(',');
+  if (text.starts_with("data:") && comma != text.npos && text.substr(0, comma + 1).ends_with(kMark))
+    return decoded_.emplace_back(decode_base64(std::string_view(text).substr(comma + 1), uri));
+  if (!nearby_ || text.starts_with("data:") || text.find("://") != text.npos)
+    uri.fail("must be a data: URI in base64" + std::string(nearby_ ? ", or the name of a file" : "") +
+             ", because other files are not read (got " + excerpt(text) +
+             "); a .glb file contains its buffers");
+  const std::string name = decode_percent(text);
+  if (const auto known = files_.find(name); known != files_.end()) return known->second;
+  try {
+    std::string bytes = nearby_(name);
+    file_bytes_ += bytes.size();
+    if (file_bytes_ > kMaxFileBytes)
+      throw InputError("", "files of the model have more than " + grouped(kMaxFileBytes) + " bytes (limit " +
+                               grouped(kMaxFileBytes) + ")");
+    return files_[name] = std::move(bytes);
+  } catch (const InputError& error) {
+    uri.fail(error.problems().front().detail);
+  }
+}
+
 std::string_view GltfFile::buffer(const GltfValue& user) {
   const std::size_t index = user.integer();
   const GltfValue buffer = root().at("buffers").item(index);
   Buffer& entry = buffers_[index];
   if (entry.decoded) return entry.bytes;
   if (const auto uri = buffer.find("uri")) {
-    entry.own = bytes_of(*uri, nearby_);
-    entry.bytes = entry.own;
+    entry.bytes = bytes_of(*uri);
   } else {
     if (index != 0 || binary_.empty()) buffer.fail("missing key \"uri\"");
     entry.bytes = binary_;
@@ -240,16 +248,21 @@ GltfNumbers GltfFile::unpacked(const GltfValue& accessor, std::uint64_t count, s
   if (const auto sparse = accessor.find("sparse")) {
     const GltfValue replaced = sparse->at("indices");
     const std::uint64_t replacements = sparse->at("count").integer();
+    if (replacements > count)
+      sparse->at("count").fail("must be at most " + std::to_string(count) +
+                               ", the count of the accessor (got " + std::to_string(replacements) + ")");
     const GltfNumbers places =
         elements(replaced, replacements, "SCALAR", replaced.at("componentType"), false);
     const GltfNumbers replacing =
         elements(sparse->at("values"), replacements, type, accessor.at("componentType"), normalized);
+    double before = -1;
     for (std::size_t i = 0; i < places.count; ++i) {
       checkpoint(i);
       const double at = places.value(i, 0);
-      if (!(at >= 0 && at < static_cast<double>(count) && at == std::floor(at)))
-        replaced.fail("indices must be integers >= 0 and < " + std::to_string(count) + " (got " +
+      if (!(at > before && at < static_cast<double>(count) && at == std::floor(at)))
+        replaced.fail("indices must be ascending integers >= 0 and < " + std::to_string(count) + " (got " +
                       text_of(at) + " at entry " + std::to_string(i) + ")");
+      before = at;
       for (std::size_t c = 0; c < components; ++c)
         values[static_cast<std::size_t>(at) * components + c] = replacing.value(i, c);
     }
@@ -274,8 +287,11 @@ GltfNumbers GltfFile::accessor(const GltfValue& user, std::string_view type) {
   const auto flag = accessor.find("normalized");
   const bool normalized = flag && flag->flag();
   const std::uint64_t count = accessor.at("count").integer();
-  if (accessor.find("sparse") || !accessor.find("bufferView"))
-    return unpacked(accessor, count, type, normalized);
+  if (accessor.find("sparse") || !accessor.find("bufferView")) {
+    const auto known = known_.find(user.integer());
+    if (known != known_.end()) return known->second;
+    return known_[user.integer()] = unpacked(accessor, count, type, normalized);
+  }
   return elements(accessor, count, type, accessor.at("componentType"), normalized);
 }
 

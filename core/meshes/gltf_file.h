@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -39,7 +40,6 @@ class GltfFile {
  private:
   struct Buffer {
     bool decoded = false;
-    std::string own;  // bytes of a data: URI or of another file
     std::string_view bytes;
   };
 
@@ -47,6 +47,8 @@ class GltfFile {
   std::string_view view(const GltfValue& user);
   std::string_view buffer(const GltfValue& user);
 
+  // Returns the bytes of a data: URI, or of the file that the URI names.
+  std::string_view bytes_of(const GltfValue& uri);
   // Returns the elements of the buffer view that `place` names, at its byteOffset.
   GltfNumbers elements(const GltfValue& place, std::uint64_t count, std::string_view type,
                        const GltfValue& component_type, bool normalized);
@@ -55,7 +57,11 @@ class GltfFile {
                        bool normalized);
 
   const ReadNearby& nearby_;
-  std::deque<std::vector<double>> unpacked_;  // numbers of accessors that are not in a buffer
+  std::deque<std::string> decoded_;           // contents of data: URIs
+  std::map<std::string, std::string> files_;  // contents of other files, by name
+  std::size_t file_bytes_ = 0;
+  std::deque<std::vector<double>> unpacked_;    // numbers of accessors that are not in a buffer
+  std::map<std::uint64_t, GltfNumbers> known_;  // the same, by accessor
   nlohmann::json document_;
   std::string_view binary_;  // BIN chunk of a .glb file
   std::vector<Buffer> buffers_;

@@ -8,7 +8,10 @@
 namespace orrery {
 namespace {
 
-constexpr std::uint32_t kMostCorners = 4096;  // clipping takes a time of corners x reflex corners
+constexpr std::uint32_t kMostCorners = 4096;
+// Maximum number of tests of corners against triangles in one file, which take about 1 s. Clipping a polygon
+// takes up to corners^3 / 6 tests.
+constexpr std::uint64_t kMostTests = 1'000'000'000;
 
 struct Point {
   double x, y;
@@ -69,7 +72,8 @@ class Polygon {
     std::uint32_t at = 0, tried = 0, left = static_cast<std::uint32_t>(corners_.size());
     while (left > 3) {
       checkpoint();
-      if (tried < left && !is_ear(at)) {  // without any ear, the polygon crosses itself: cut off a corner
+      if (tried < left && tests_ < kMostTests &&
+          !is_ear(at)) {  // without any ear, the polygon crosses itself: cut off a corner
         at = next_[at];
         ++tried;
         continue;
@@ -82,6 +86,8 @@ class Polygon {
     }
     add(corners_[before_[at]], corners_[at], corners_[next_[at]]);
   }
+
+  bool has_tests_left() const { return tests_ < kMostTests; }
 
  private:
   void project(const std::vector<Vec3d>& positions) {
@@ -128,10 +134,11 @@ class Polygon {
 
   // Returns whether the corner is convex and its triangle contains no other corner. Corners at the place of
   // one of its own corners do not count, because bridges to holes use corners twice.
-  bool is_ear(std::uint32_t corner) const {
+  bool is_ear(std::uint32_t corner) {
     const std::uint32_t before = before_[corner], next = next_[corner];
     const Point &a = points_[before], &b = points_[corner], &c = points_[next];
     if (!(area(a, b, c) > 0)) return false;
+    tests_ += reflex_.size();
     for (const std::uint32_t i : reflex_) {
       const Point& p = points_[i];
       if (i == before || i == corner || i == next || p == a || p == b || p == c) continue;
@@ -144,6 +151,7 @@ class Polygon {
   std::vector<Point> points_;
   std::vector<std::uint32_t> before_, next_;  // neighbours of the corners that are left
   std::vector<std::uint32_t> reflex_;         // corners that are left and not convex
+  std::uint64_t tests_ = 0;                   // calls of area() for ears of all polygons, at most
 };
 
 }  // namespace
@@ -155,7 +163,7 @@ void divide_polygons(const std::vector<Fan>& fans, TriangleMesh& mesh) {
     checkpoint();
     polygon.read(mesh, fan);
     if (polygon.is_convex()) continue;
-    if (fan.count > kMostCorners) {
+    if (fan.count > kMostCorners || !polygon.has_tests_left()) {
       ++large;
       continue;
     }
@@ -164,12 +172,14 @@ void divide_polygons(const std::vector<Fan>& fans, TriangleMesh& mesh) {
     polygon.clip([&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
       mesh.triangles[triangle++] = {a, b, c};
     });
+    if (!polygon.has_tests_left()) ++large;
   }
   if (crossed > 0)
     mesh.notes.push_back(grouped(crossed) + " polygons cross themselves; their triangles may overlap");
   if (large > 0)
-    mesh.notes.push_back(grouped(large) + " concave polygons have more than " + grouped(kMostCorners) +
-                         " corners; their triangles may overlap");
+    mesh.notes.push_back(grouped(large) + " concave polygons have too many corners (limit " +
+                         grouped(kMostCorners) +
+                         ", and fewer in files with many); their triangles may overlap");
 }
 
 }  // namespace orrery

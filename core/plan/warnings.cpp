@@ -359,7 +359,8 @@ std::vector<Problem> find_warnings(const Scene& scene, const Plan& plan) {
 }
 
 std::vector<Problem> find_warnings(const Scene& scene, const Plan& plan, const TraceCounts& traced) {
-  return warnings(scene, plan, traced.camera_hits == 0);
+  // Camera rays that are scattered in a body of index 1 hit no surface.
+  return warnings(scene, plan, traced.camera_hits == 0 && traced.scatterings == 0);
 }
 
 }  // namespace orrery

@@ -9,6 +9,7 @@
 #include "core/base/shorten.h"
 #include "core/math/angles.h"
 #include "core/math/bounds.h"
+#include "core/math/face_normal.h"
 #include "core/params/params.h"
 
 namespace orrery {
@@ -87,11 +88,17 @@ Vec3d axis_of(std::string_view name) {
 
 Json numbers(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
-// Vertices of the triangles.
+// Vertices of the triangles with an area, which are drawn, or of all triangles if none has.
 std::vector<Vec3d> corners_of(const TriangleMesh& mesh) {
   std::vector<char> used(mesh.positions.size());
-  for (const auto& triangle : mesh.triangles)
-    for (const std::uint32_t v : triangle) used[v] = 1;
+  bool any = false;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Vec3d &p = mesh.positions[a], &q = mesh.positions[b], &r = mesh.positions[c];
+    if (face_normal(p, q, r) == Vec3d()) continue;
+    used[a] = used[b] = used[c] = 1;
+    any = true;
+  }
+  if (!any) return mesh.positions;
   std::vector<Vec3d> corners;
   corners.reserve(mesh.positions.size());
   for (std::size_t v = 0; v < used.size(); ++v)
@@ -112,12 +119,10 @@ double grid_step(double size) {
   return power * (steps < 1.5 ? 1 : steps < 3.5 ? 2 : steps < 7.5 ? 5 : 10);
 }
 
-// Adds the plane below the model.
+// Adds the plane below the model, unless the camera is below it: the plane would hide the model.
 void add_ground(Json& scene, const ViewOptions& options, const StudioAxes& axes,
-                std::span<const Vec3d> corners) {
+                std::span<const Vec3d> corners, const Vec3d& eye) {
   if (options.ground == ViewOptions::Ground::none) return;
-  const double reflectance = ground_reflectance();
-  Json material{{"type", "lambert"}, {"reflectance", reflectance}};
   const Vec3d* lowest = &corners.front();
   Boundsd bounds;
   for (const Vec3d& corner : corners) {
@@ -125,6 +130,9 @@ void add_ground(Json& scene, const ViewOptions& options, const StudioAxes& axes,
     if (dot(corner, axes.up) < dot(*lowest, axes.up)) lowest = &corner;
   }
   const Vec3d origin = axes.up * dot(*lowest, axes.up);
+  if (!(dot(eye - origin, axes.up) > 0)) return;
+  const double reflectance = ground_reflectance();
+  Json material{{"type", "lambert"}, {"reflectance", reflectance}};
   if (options.ground == ViewOptions::Ground::grid) {
     const double size = bounds.diagonal() > 0 ? bounds.diagonal() : 1, step = grid_step(size);
     scene["textures"]["grid"] = {{"type", "checker"},
@@ -216,7 +224,7 @@ Json view_scene(const TriangleMesh& mesh, MeshFormat format, const ModelReferenc
                       {"intensity", numbers(Vec3d(kKeyLight))},
                       {"angle_degrees", kKeyWidth}}};
   scene["objects"] = {std::move(object)};
-  add_ground(scene, options, axes, corners);
+  add_ground(scene, options, axes, corners, framing.eye);
   // In the open, sharing paths costs more than it gains.
   scene["render"] = {{"technique", "path"}, {"max_depth", 4}, {"path_reuse", 1}};
   return scene;

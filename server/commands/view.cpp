@@ -94,7 +94,8 @@ View view_of(const ViewFlags& flags, const RenderRequest& request) {
 int view(const ViewFlags& flags) {
   if (flags.print_scene) {
     const View made = view_of(flags, read_render_flags(flags.render.render));
-    write_file(flags.render.output.value_or("-"), made.scene.dump(2) + "\n");
+    write_file(flags.render.output.value_or("-"),
+               made.scene.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     return kDone;
   }
   return render_image(flags.render, [&](const RenderRequest& request) {

@@ -49,6 +49,8 @@ RenderOrder make_view_order(App& app, const Request& request, const std::string&
 Response post_view(App& app, Request& request) {
   app.require_open();
   RequestTrace trace;
+  read_query(request, view_keys());  // reports errors before the model is stored
+  read_view_query(request);
   const AssetStore::AddResult added = app.add_asset("", request.body, caller_of(request));
   const AssetStore::Asset::Mesh& mesh = mesh_of(*added.asset);
   const RenderOrder order = make_view_order(app, request, added.id, mesh.format, trace);
@@ -107,7 +109,7 @@ void add_view_routes(Router& router, App& app) {
   image_of_url.headers.push_back("Cache-Control");
   const RouteBody body{.limit = {app.settings().asset_bytes, "asset_bytes"}, .require = refuse_compressed};
   router
-      .add("POST", "/v1/view", Scope::render, LogLevel::info, body,
+      .add("POST", "/v1/view", Scope::write, LogLevel::info, body,
            [&app](Request& request) { return post_view(app, request); })
       .describe({.id = "view_model",
                  .summary = "Renders a model (OBJ, PLY, STL, glTF) without a scene",

@@ -88,5 +88,18 @@ TEST_F(ViewCommand, WarnsAboutContentsThatAreNotModelled) {
   EXPECT_EQ(result.err, "orrery: warning: " + file("a.obj") + ": materials are not modelled\n");
 }
 
+// From below, the plane would hide the model. Triangles without area are not drawn and do not count.
+TEST_F(ViewCommand, ShowsModelFromEverywhere) {
+  const auto scene_of = [&](const std::string& more) {
+    return nlohmann::json::parse(run("view " + more + " --print-scene").out);
+  };
+  const std::string cube = write("c.obj", test::obj_of(test::cube()));
+  EXPECT_EQ(scene_of(cube + " --ground shadow").at("objects").size(), 2u);
+  EXPECT_EQ(scene_of(cube + " --ground shadow --from bottom").at("objects").size(), 1u);
+  EXPECT_EQ(scene_of(cube + " --ground grid --from=30,-20").at("objects").size(), 1u);
+  const std::string stray = write("d.obj", test::obj_of(test::cube()) + "v 100 100 100\nf 9 9 9\n");
+  EXPECT_EQ(scene_of(stray).at("camera"), scene_of(cube).at("camera"));
+}
+
 }  // namespace
 }  // namespace orrery

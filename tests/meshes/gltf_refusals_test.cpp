@@ -115,8 +115,11 @@ TEST(Gltf, RejectsRangesOutsideBuffer) {
   };
   EXPECT_EQ(sparse("{}"), "/accessors/0/sparse: missing key \"indices\"");
   const std::string values = R"(,"values":{"bufferView":0}})";
-  EXPECT_THAT(sparse(R"({"count":9,"indices":{"bufferView":0,"componentType":5125})" + values),
-              HasSubstr("/accessors/0/sparse/values: must have at least 1 element of 12 bytes"));
+  EXPECT_THAT(sparse(R"({"count":4,"indices":{"bufferView":0,"componentType":5121})" + values),
+              HasSubstr("/accessors/0/sparse/count: must be at most 3, the count of the accessor (got 4)"));
+  EXPECT_THAT(sparse(R"({"count":2,"indices":{"bufferView":0,"componentType":5121})" + values),
+              HasSubstr("/accessors/0/sparse/indices: indices must be ascending integers >= 0 and < 3 (got 0 "
+                        "at entry 1)"));
   EXPECT_THAT(with_data(kBuffer, kView, R"({"componentType":5126,"count":99999999999,"type":"VEC3"})"),
               HasSubstr("/accessors/0: count must be from 1 to 10,000,000 (got 99999999999)"));
 }

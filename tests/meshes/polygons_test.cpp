@@ -157,5 +157,18 @@ TEST(Polygons, AreDividedInPlyFiles) {
   EXPECT_EQ(area, 2.5);
 }
 
+// The time of polygons for which clipping is slow is bounded per file.
+TEST(Polygons, KeepFansOfTooManyCorners) {
+  Outline spiral;
+  for (int i = 0; i < 2500; ++i)
+    spiral.push_back({(1 + 0.001 * i) * std::cos(0.02 * i), (1 + 0.001 * i) * std::sin(0.02 * i)});
+  for (int i = 2499; i >= 0; --i)
+    spiral.push_back({(0.99 + 0.001 * i) * std::cos(0.02 * i), (0.99 + 0.001 * i) * std::sin(0.02 * i)});
+  const TriangleMesh mesh = read_mesh(obj_of_polygon(spiral, kGround));
+  EXPECT_EQ(mesh.triangles.size(), spiral.size() - 2);
+  ASSERT_EQ(mesh.notes.size(), 1u);
+  EXPECT_NE(mesh.notes[0].find("1 concave polygons have too many corners (limit 4,096"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace orrery::test
