@@ -9,7 +9,7 @@ namespace orrery {
 namespace {
 
 constexpr std::uint32_t kMostCorners = 4096;
-// Maximum number of tests of corners against triangles in one file, which take about 1 s. Clipping a polygon
+// Maximum number of tests of corners against triangles in one file, which take about 2 s. Clipping a polygon
 // takes up to corners^3 / 6 tests.
 constexpr std::uint64_t kMostTests = 1'000'000'000;
 
