@@ -6,6 +6,7 @@
 
 #include "core/base/task_scope.h"
 #include "core/math/hemisphere.h"
+#include "core/math/mirror.h"
 #include "core/model/object_pointer.h"
 
 namespace orrery {
@@ -14,10 +15,6 @@ namespace {
 // Multiples of the largest coordinate: least distance of a hit, and distance of the neighbouring ray.
 constexpr double kLeast = 1e-13, kShift = 1e-8;
 constexpr int kSides = 4;
-
-Vec3d mirrored(const Vec3d& direction, const Vec3d& normal) {
-  return safe_normalize(direction - normal * (2 * dot(direction, normal)));
-}
 
 }  // namespace
 
@@ -53,14 +50,14 @@ void MirrorPaths::trace_view(const CameraFrame& frame, int stride) {
   }
 }
 
-std::optional<MirrorPaths::Met> MirrorPaths::nearest(const Ray<double>& ray) {
-  std::optional<Met> found;
+std::optional<MirrorPaths::Hit> MirrorPaths::nearest(const Ray<double>& ray) {
+  std::optional<Hit> found;
   const BoxRay<double> box_ray(ray.origin, ray.direction);
   for (const PlacedPrimitive& placed : primitives_.all()) {
     if (!may_meet(placed.box, box_ray)) continue;
-    const auto met = probe_.meet(placed, ray);
-    if (met && met->distance > least_ && (!found || met->distance < found->at.distance))
-      found = Met{&placed, *met};
+    const auto hit = tester_.intersect(placed, ray);
+    if (hit && hit->distance > least_ && (!found || hit->distance < found->at.distance))
+      found = Hit{&placed, *hit};
   }
   return found;
 }
@@ -69,34 +66,34 @@ std::optional<MirrorPaths::Met> MirrorPaths::nearest(const Ray<double>& ray) {
 // directions, so that errors of any growth are measured in double precision (Benettin et al. 1980). Adds the
 // squares of the largest turns up to each depth. The path ends where the neighbour misses the primitive.
 void MirrorPaths::follow(const Ray<double>& from, Squares& squares) {
-  Ray<double> ray = from, beside{from.origin + tangents_of(from.direction).first * shift_, from.direction};
+  Ray<double> ray = from, neighbour{from.origin + tangents_of(from.direction).first * shift_, from.direction};
   double growth = 1, weight = 1, largest = 0;  // growth: error of the path / distance of both rays
   std::size_t depth = 1;
   for (; depth < squares.size(); ++depth) {
-    const auto met = nearest(ray);
-    if (!met) break;
-    weight *= primitives_.mirrored_share(*met->primitive);
+    const auto hit = nearest(ray);
+    if (!hit) break;
+    weight *= primitives_.mirrored_share(*hit->primitive);
     if (weight == 0) break;
-    const auto other = probe_.meet(*met->primitive, beside);
-    if (!other) break;
-    const Vec3d onward = mirrored(ray.direction, met->at.shading);
-    const Vec3d turn = mirrored(beside.direction, other->shading) - onward;
-    const Vec3d apart = other->position - met->at.position;
+    const auto nearby = tester_.intersect(*hit->primitive, neighbour);
+    if (!nearby) break;
+    const Vec3d onward = safe_normalize(mirrored(ray.direction, hit->at.shading));
+    const Vec3d turn = safe_normalize(mirrored(neighbour.direction, nearby->shading)) - onward;
+    const Vec3d apart = nearby->position - hit->at.position;
     const double radians = weight * std::min(1.0, growth * error_ / shift_ * length(turn));
     if (radians > largest) {
       largest = radians;
       if (largest > turns_.largest) {
         turns_.largest = largest;
-        turns_.where = pointer_to_object(scene_, met->primitive->number);
+        turns_.where = pointer_to_object(scene_, hit->primitive->number);
       }
     }
     squares[depth] += largest * largest;
-    const double distance = std::max(length(apart), met->at.distance * length(turn));
+    const double distance = std::max(length(apart), hit->at.distance * length(turn));
     if (distance == 0) break;
     growth *= distance / shift_;
-    const Vec3d start = met->at.position + met->at.outward * (2 * least_);
+    const Vec3d start = hit->at.position + hit->at.outward * (2 * least_);
     ray = {start, onward};
-    beside = {start + apart * (shift_ / distance), safe_normalize(onward + turn * (shift_ / distance))};
+    neighbour = {start + apart * (shift_ / distance), safe_normalize(onward + turn * (shift_ / distance))};
   }
   for (; depth < squares.size(); ++depth) squares[depth] += largest * largest;
 }

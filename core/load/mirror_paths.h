@@ -23,20 +23,20 @@ class MirrorPaths {
   const MirrorTurns& turns() const { return turns_; }
 
  private:
-  struct Met {
+  struct Hit {
     const PlacedPrimitive* primitive;
     SurfaceAt at;
   };
   using Squares = std::array<double, MirrorTurns::kDepths + 1>;
 
   void trace_view(const CameraFrame& frame, int stride);
-  std::optional<Met> nearest(const Ray<double>& ray);
+  std::optional<Hit> nearest(const Ray<double>& ray);
   void follow(const Ray<double>& from, Squares& squares);
 
   const Scene& scene_;
   const PlacedPrimitives& primitives_;
   const double least_, shift_, error_;  // metres: see mirror_paths.cpp
-  PrimitiveTester probe_;
+  PrimitiveTester tester_;
   MirrorTurns turns_;
 };
 

@@ -15,7 +15,7 @@ Boundsd box_of(const Boundsd& own, const Affined& world) {
 
 }  // namespace
 
-std::optional<SurfaceAt> PrimitiveTester::meet(const PlacedPrimitive& placed, const Ray<double>& ray) {
+std::optional<SurfaceAt> PrimitiveTester::intersect(const PlacedPrimitive& placed, const Ray<double>& ray) {
   static const LaneGroups kOne = LaneGroups::single(0);
   ++tests_;
   const Affined& into = placed.model_from_world;

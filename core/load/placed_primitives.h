@@ -33,7 +33,7 @@ struct SurfaceAt {
 class PrimitiveTester {
  public:
   // Returns the nearest hit of the primitive, or nullopt if the ray misses it.
-  std::optional<SurfaceAt> meet(const PlacedPrimitive& placed, const Ray<double>& ray);
+  std::optional<SurfaceAt> intersect(const PlacedPrimitive& placed, const Ray<double>& ray);
   std::size_t tests() const { return tests_; }
 
  private:

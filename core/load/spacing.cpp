@@ -127,15 +127,15 @@ class LayerGapSearch {
     const Vec3d along = shared.x <= std::min(shared.y, shared.z) ? Vec3d(1, 0, 0)
                         : shared.y <= shared.z                   ? Vec3d(0, 1, 0)
                                                                  : Vec3d(0, 0, 1);
-    const auto first = probe_.meet(one, {middle - along * size, along});
+    const auto first = probe_.intersect(one, {middle - along * size, along});
     if (!first) return;
     // Compares both surfaces from just outside the first one, at three points that are not collinear.
     const Tangents<double> aside = tangents_of(first->outward);
     double distance = 0;
     for (const Vec3d& shift : {Vec3d(), aside.first, aside.second}) {
       const Vec3d from = first->position + shift * (kBeside * size) + first->outward * (kLayerGap * size);
-      const auto here = probe_.meet(one, {from, -first->outward}),
-                 there = probe_.meet(other, {from, -first->outward});
+      const auto here = probe_.intersect(one, {from, -first->outward}),
+                 there = probe_.intersect(other, {from, -first->outward});
       if (!here || !there || std::abs(dot(here->outward, there->outward)) < kParallel) return;
       distance = std::max(distance, std::abs(here->distance - there->distance));
     }
@@ -192,14 +192,14 @@ class LayerGapSearch {
   // Measures at three neighbouring points of one primitive and uses the largest distance, because touching
   // spheres are close at a single point only.
   void look_around(const PlacedPrimitive& from, const Ray<double>& ray, VisibleMirrors& seen) {
-    const auto first = probe_.meet(from, ray);
+    const auto first = probe_.intersect(from, ray);
     if (!first) return;
     const double size = from.box.bounded() ? from.box.diagonal() : length(first->position - ray.origin);
     const auto [one, other] = beside(from, *first, size);
     std::array<SurfaceAt, 3> at{*first};
     for (std::size_t i = 1; i < at.size(); ++i) {
       const Vec3d shift = i == 1 ? one : other;
-      const auto met = probe_.meet(from, {ray.origin + shift, ray.direction});
+      const auto met = probe_.intersect(from, {ray.origin + shift, ray.direction});
       if (!met) return;
       at[i] = *met;
     }
@@ -264,8 +264,8 @@ class LayerGapSearch {
   // Estimates the radius of curvature in metres from the curvatures in two directions. For perpendicular
   // directions, the estimate is exact for a cylinder and too small by a factor of sqrt(2) for a sphere.
   static double radius_at(const std::array<SurfaceAt, 3>& at) {
-    const auto curvature = [&](const SurfaceAt& beside) {
-      return length(beside.shading - at[0].shading) / length(beside.position - at[0].position);
+    const auto curvature = [&](const SurfaceAt& neighbour) {
+      return length(neighbour.shading - at[0].shading) / length(neighbour.position - at[0].position);
     };
     return 1 / std::hypot(curvature(at[1]), curvature(at[2]));
   }
@@ -274,8 +274,8 @@ class LayerGapSearch {
     const Tangents<double> aside = tangents_of(at.outward);
     for (const Vec3d& shift : {aside.first, aside.second}) {
       const Vec3d from = at.position + (at.outward + shift) * (kBeside * at.distance);
-      const auto beside = probe_.meet(placed, {from, -at.outward});
-      if (beside && beside->outward != at.outward) return true;
+      const auto neighbour = probe_.intersect(placed, {from, -at.outward});
+      if (neighbour && neighbour->outward != at.outward) return true;
     }
     return false;
   }
@@ -289,7 +289,7 @@ class LayerGapSearch {
     double distance = std::numeric_limits<double>::infinity();
     for (const PlacedPrimitive& other : primitives_.all()) {
       if (!may_meet(other.box, box_ray)) continue;
-      const auto met = probe_.meet(other, ray);
+      const auto met = probe_.intersect(other, ray);
       if (met && met->distance > least && met->distance < distance && is_such(other, *met))
         distance = met->distance;
     }
