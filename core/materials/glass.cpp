@@ -71,10 +71,7 @@ void GlassInputs<double>::read(MaterialParams& p) {
 namespace {
 
 template <class T>
-class GlassKernel final : public GlassKernelOf<Glass, T> {
- public:
-  using GlassKernelOf<Glass, T>::GlassKernelOf;
-};
+using GlassKernel = GlassKernelOf<Glass, T>;
 
 }  // namespace
 

@@ -7,7 +7,7 @@ namespace orrery {
 
 // Kernel of Glass, and of records that derive from it.
 template <template <class> class Record, class T>
-class GlassKernelOf : public LobeKernel<Record, T> {
+class GlassKernelOf final : public LobeKernel<Record, T> {
  public:
   using N = Lanes<T>;
   using LobeKernel<Record, T>::LobeKernel;

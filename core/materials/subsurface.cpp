@@ -32,10 +32,7 @@ void SubsurfaceInputs<double>::read(MaterialParams& p) {
 namespace {
 
 template <class T>
-class SubsurfaceKernel final : public GlassKernelOf<Subsurface, T> {
- public:
-  using GlassKernelOf<Subsurface, T>::GlassKernelOf;
-};
+using SubsurfaceKernel = GlassKernelOf<Subsurface, T>;
 
 }  // namespace
 
