@@ -27,7 +27,7 @@ fs::path path_within(const fs::path& given_folder, const std::string& name, cons
 
 }  // namespace
 
-ReadNearby files_beside(const fs::path& file) {
+ReadNearby files_near(const fs::path& file) {
   return [folder = file.parent_path()](const std::string& name) {
     const fs::path path = path_within(folder, name, "model");
     try {
@@ -36,6 +36,17 @@ ReadNearby files_beside(const fs::path& file) {
       throw InputError("", unreadable.what());
     }
   };
+}
+
+ModelFile read_model_file(const std::string& path) {
+  const std::string bytes = read_file(path);
+  const bool is_file = path != "-";
+  try {
+    return {mesh_format(bytes), bytes.size(),
+            read_mesh(bytes, {}, is_file ? files_near(path) : ReadNearby())};
+  } catch (const InputError& error) {
+    throw BadScene(is_file ? path : "standard input", error);
+  }
 }
 
 template <class Read>
@@ -52,7 +63,7 @@ auto AssetFiles::read_with(const std::string& name, const Read& read) const {
 
 TriangleMesh AssetFiles::mesh_file(const std::string& name) const {
   return read_with(name, [](const std::string& bytes, const fs::path& path) {
-    return read_mesh(bytes, {}, files_beside(path));
+    return read_mesh(bytes, {}, files_near(path));
   });
 }
 

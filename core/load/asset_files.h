@@ -7,7 +7,17 @@
 namespace orrery {
 
 // Returns a function that reads files in the folder of a mesh file, or below it.
-ReadNearby files_beside(const std::filesystem::path& file);
+ReadNearby files_near(const std::filesystem::path& file);
+
+// Mesh file on the command line.
+struct ModelFile {
+  MeshFormat format;
+  std::size_t bytes;
+  TriangleMesh mesh;
+};
+// Reads a mesh file with the files in its folder that it names, or standard input if `path` is "-". Throws
+// FileError, and BadScene if the file is invalid.
+ModelFile read_model_file(const std::string& path);
 
 // Mesh and image files in the folder of a scene or below it.
 class AssetFiles final : public AssetSource {

@@ -9,7 +9,7 @@
 #include "core/base/shorten.h"
 #include "core/math/angles.h"
 #include "core/math/bounds.h"
-#include "core/math/face_normal.h"
+#include "core/meshes/repair.h"
 #include "core/params/params.h"
 
 namespace orrery {
@@ -90,20 +90,11 @@ Json numbers(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
 // Vertices of the triangles with an area, which are drawn, or of all triangles if none has.
 std::vector<Vec3d> corners_of(const TriangleMesh& mesh) {
-  std::vector<char> used(mesh.positions.size());
-  bool any = false;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const Vec3d &p = mesh.positions[a], &q = mesh.positions[b], &r = mesh.positions[c];
-    if (face_normal(p, q, r) == Vec3d()) continue;
-    used[a] = used[b] = used[c] = 1;
-    any = true;
-  }
-  if (!any) return mesh.positions;
-  std::vector<Vec3d> corners;
-  corners.reserve(mesh.positions.size());
-  for (std::size_t v = 0; v < used.size(); ++v)
-    if (used[v]) corners.push_back(mesh.positions[v]);
-  return corners;
+  TriangleMesh drawn{mesh.positions, mesh.triangles, {}, {}};
+  drop_degenerate(drawn);
+  if (drawn.triangles.empty()) return mesh.positions;
+  drop_unused(drawn);
+  return std::move(drawn.positions);
 }
 
 // Returns the reflectance at which unshadowed ground has the radiance of the surroundings.

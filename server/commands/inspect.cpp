@@ -4,7 +4,6 @@
 
 #include "core/base/shorten.h"
 #include "core/load/asset_files.h"
-#include "core/load/scene_file.h"
 #include "core/meshes/inspection.h"
 #include "core/params/params.h"
 #include "server/commands/commands.h"
@@ -27,26 +26,9 @@ struct InspectOptions {
   bool json = false;
 };
 
-struct Model {
-  MeshFormat format;
-  std::size_t bytes;
-  TriangleMesh mesh;
-};
-
-Model read_model(const std::string& path) {
-  const std::string bytes = read_file(path);
-  const bool is_file = path != "-";
-  try {
-    return {mesh_format(bytes), bytes.size(),
-            read_mesh(bytes, {}, is_file ? files_beside(path) : ReadNearby())};
-  } catch (const InputError& error) {
-    throw BadScene(is_file ? path : "standard input", error);
-  }
-}
-
 nlohmann::ordered_json numbers(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
-nlohmann::ordered_json inspection_json(const Model& model, const MeshInspection& found) {
+nlohmann::ordered_json inspection_json(const ModelFile& model, const MeshInspection& found) {
   return {{"format", name_of(model.format)},
           {"bytes", model.bytes},
           {"vertices", model.mesh.positions.size()},
@@ -71,7 +53,7 @@ std::string text_of(const Vec3d& v) {
   return number_text(v.x) + ", " + number_text(v.y) + ", " + number_text(v.z);
 }
 
-std::string inspection_text(const Model& model, const MeshInspection& found) {
+std::string inspection_text(const ModelFile& model, const MeshInspection& found) {
   const TriangleMesh& mesh = model.mesh;
   const Vec3d size = found.bounds.hi - found.bounds.lo;
   std::string text =
@@ -91,7 +73,7 @@ std::string inspection_text(const Model& model, const MeshInspection& found) {
 }
 
 int inspect(const InspectOptions& options) {
-  const Model model = read_model(options.model);
+  const ModelFile model = read_model_file(options.model);
   const MeshInspection found = inspect_mesh(model.mesh);
   std::cout << (options.json ? inspection_json(model, found).dump(2) + "\n" : inspection_text(model, found));
   return kDone;

@@ -75,20 +75,14 @@ std::string help_of(const ViewParameter& parameter) {
 View view_of(const ViewFlags& flags, const RenderRequest& request) {
   const ViewOptions options = options_of(flags);
   const std::string& path = flags.render.render.scene;
-  const std::string bytes = read_file(path);
-  try {
-    const bool is_file = path != "-";
-    View view{ReadModel(read_mesh(bytes, {}, is_file ? files_beside(path) : ReadNearby())), {}};
-    for (const std::string& note : view.model.mesh().notes)
-      std::cerr << "orrery: warning: " << path << ": " << note << "\n";
-    const std::string name = path == "-" ? "model" : std::filesystem::path(path).filename().string();
-    const auto [width, height] = view_size(request);
-    view.scene =
-        view_scene(view.model.mesh(), mesh_format(bytes), {"file", name, name}, options, width, height);
-    return view;
-  } catch (const InputError& error) {
-    throw BadScene(path == "-" ? "standard input" : path, error);
-  }
+  ModelFile file = read_model_file(path);
+  View view{ReadModel(std::move(file.mesh)), {}};
+  for (const std::string& note : view.model.mesh().notes)
+    std::cerr << "orrery: warning: " << path << ": " << note << "\n";
+  const std::string name = path == "-" ? "model" : std::filesystem::path(path).filename().string();
+  const auto [width, height] = view_size(request);
+  view.scene = view_scene(view.model.mesh(), file.format, {"file", name, name}, options, width, height);
+  return view;
 }
 
 int view(const ViewFlags& flags) {

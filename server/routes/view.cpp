@@ -18,11 +18,16 @@ std::vector<std::string_view> view_keys() {
   return keys;
 }
 
-ViewOptions read_view_query(const Request& request) {
+struct ViewQuery {
+  RenderRequest request;
+  ViewOptions options;
+};
+ViewQuery read_view_query(const Request& request) {
   nlohmann::json given = nlohmann::json::object();
   for (const std::string_view key : view_keys())
     if (const auto text = find_field(request.query, key)) given[std::string(key)] = *text;
-  return read_view_options(document_of(std::move(given)));
+  return {with_view_budget(read_query(request, view_keys())),
+          read_view_options(document_of(std::move(given)))};
 }
 
 const AssetStore::Asset::Mesh& mesh_of(const AssetStore::Asset& asset) {
@@ -31,29 +36,26 @@ const AssetStore::Asset::Mesh& mesh_of(const AssetStore::Asset& asset) {
 }
 
 // Orders the image of a stored model.
-RenderOrder make_view_order(App& app, const Request& request, const std::string& id, MeshFormat format,
-                            RequestTrace& trace) {
-  RenderRequest wanted = with_view_budget(read_query(request, view_keys()));
-  const ViewOptions options = read_view_query(request);
-  const Caller caller = caller_of(request);
+RenderOrder make_view_order(App& app, const Caller& caller, ViewQuery query, const std::string& id,
+                            MeshFormat format, RequestTrace& trace) {
   SceneStore::Prepared scene;
   app.read_assets(caller, trace, [&](const AssetSource& assets) {
-    const auto [width, height] = view_size(wanted);
+    const auto [width, height] = view_size(query.request);
     const nlohmann::json json =
-        view_scene(assets.mesh_asset(id), format, {"asset", id, "Model"}, options, width, height);
+        view_scene(assets.mesh_asset(id), format, {"asset", id, "Model"}, query.options, width, height);
     scene = app.scenes().get(document_of(json), assets, caller.client);
   });
-  return make_order(std::move(scene), std::move(wanted), FileFormat::png, caller);
+  return make_order(std::move(scene), std::move(query.request), FileFormat::png, caller);
 }
 
 Response post_view(App& app, Request& request) {
   app.require_open();
   RequestTrace trace;
-  read_query(request, view_keys());  // reports errors before the model is stored
-  read_view_query(request);
-  const AssetStore::AddResult added = app.add_asset("", request.body, caller_of(request));
+  const Caller caller = caller_of(request);
+  ViewQuery query = read_view_query(request);  // reports errors before the model is stored
+  const AssetStore::AddResult added = app.add_asset("", request.body, caller);
   const AssetStore::Asset::Mesh& mesh = mesh_of(*added.asset);
-  const RenderOrder order = make_view_order(app, request, added.id, mesh.format, trace);
+  const RenderOrder order = make_view_order(app, caller, std::move(query), added.id, mesh.format, trace);
   const Rendered rendered = app.renders().render(order, trace);
   Response response = picture_response(kType, rendered, trace);
   set_content_location(response, kType, order.scene->scene(), *rendered.picture, request.prefix);
@@ -69,7 +71,8 @@ Response get_view(App& app, Request& request) {
   RequestTrace trace;
   const std::string& id = request.path_value("sha256");
   AssetStore::require_name(id);
-  const RenderOrder order = make_view_order(app, request, id, mesh_of(*app.assets().find(id)).format, trace);
+  const RenderOrder order = make_view_order(app, caller_of(request), read_view_query(request), id,
+                                            mesh_of(*app.assets().find(id)).format, trace);
   // A later version may frame and light models in another way, and the asset may be removed.
   return frame_response(app, request, order, trace, "no-cache");
 }
