@@ -97,8 +97,8 @@ TextureStage<T>::TextureStage(const Scene& scene, const Exposure& exposure) : ex
     if (pass == entry.passes.end())
       pass = entry.passes.insert(pass, {use.slot, std::vector<Binding<T>>(materials)});
     pass->by_material[material] = {T(1),
-                                   static_cast<T>(use.scale),
                                    static_cast<T>(use.offset),
+                                   Vec3<T>(use.scale),
                                    Vec3<T>(channel_weights(use.channel)),
                                    use.channel == TextureChannel::rgb ? T(1) : T(0),
                                    Vec3<T>(use.least),

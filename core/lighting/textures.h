@@ -31,7 +31,8 @@ class TextureStage {
   // TextureUse in lanes, by material. `used` is 0 for materials that do not use the texture in this slot.
   template <class M>
   struct Binding {
-    M used, scale, offset;
+    M used, offset;
+    Vec3<M> scale;
     Vec3<M> weights;  // weights of the channels, if the value is grey
     M rgb;            // 1: the value is the colour
     Vec3<M> least, most;

@@ -25,6 +25,10 @@ fs::path path_within(const fs::path& given_folder, const std::string& name, cons
   return path;
 }
 
+MeshModelPtr share_model(std::string_view bytes, const ReadNearby& nearby) {
+  return std::make_shared<const MeshModel>(read_model(bytes, {}, nearby));
+}
+
 }  // namespace
 
 ReadNearby files_near(const fs::path& file) {
@@ -42,8 +46,7 @@ ModelFile read_model_file(const std::string& path) {
   const std::string bytes = read_file(path);
   const bool is_file = path != "-";
   try {
-    return {mesh_format(bytes), bytes.size(),
-            read_mesh(bytes, {}, is_file ? files_near(path) : ReadNearby())};
+    return {mesh_format(bytes), bytes.size(), share_model(bytes, is_file ? files_near(path) : ReadNearby())};
   } catch (const InputError& error) {
     throw BadScene(is_file ? path : "standard input", error);
   }
@@ -61,9 +64,9 @@ auto AssetFiles::read_with(const std::string& name, const Read& read) const {
   }
 }
 
-TriangleMesh AssetFiles::mesh_file(const std::string& name) const {
+MeshModelPtr AssetFiles::model_file(const std::string& name) const {
   return read_with(name, [](const std::string& bytes, const fs::path& path) {
-    return read_mesh(bytes, {}, files_near(path));
+    return share_model(bytes, files_near(path));
   });
 }
 

@@ -9,13 +9,13 @@ namespace orrery {
 // Returns a function that reads files in the folder of a mesh file, or below it.
 ReadNearby files_near(const std::filesystem::path& file);
 
-// Mesh file on the command line.
+// Model file on the command line.
 struct ModelFile {
   MeshFormat format;
   std::size_t bytes;
-  TriangleMesh mesh;
+  MeshModelPtr model;
 };
-// Reads a mesh file with the files in its folder that it names, or standard input if `path` is "-". Throws
+// Reads a model file with the files in its folder that it names, or standard input if `path` is "-". Throws
 // FileError, and BadScene if the file is invalid.
 ModelFile read_model_file(const std::string& path);
 
@@ -23,7 +23,7 @@ ModelFile read_model_file(const std::string& path);
 class AssetFiles final : public AssetSource {
  public:
   explicit AssetFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
-  TriangleMesh mesh_file(const std::string& name) const override;
+  MeshModelPtr model_file(const std::string& name) const override;
   TexelsPtr picture_file(const std::string& name) const override;
 
  private:

@@ -71,11 +71,11 @@ void read_camera(Params& p, Scene& scene) {
 class CachedAssetSource final : public AssetSource {
  public:
   explicit CachedAssetSource(const AssetSource& from) : from_(from) {}
-  TriangleMesh mesh_file(const std::string& name) const override {
-    return once(files_, name, [&] { return from_.mesh_file(name); });
+  MeshModelPtr model_file(const std::string& name) const override {
+    return once(files_, name, [&] { return from_.model_file(name); });
   }
-  TriangleMesh mesh_asset(const std::string& sha256) const override {
-    return once(assets_, sha256, [&] { return from_.mesh_asset(sha256); });
+  MeshModelPtr model_asset(const std::string& sha256) const override {
+    return once(assets_, sha256, [&] { return from_.model_asset(sha256); });
   }
   TexelsPtr picture_file(const std::string& name) const override {
     return once(picture_files_, name, [&] { return from_.picture_file(name); });
@@ -91,7 +91,7 @@ class CachedAssetSource final : public AssetSource {
     return known != assets.end() ? known->second : assets.emplace(name, read()).first->second;
   }
   const AssetSource& from_;
-  mutable std::map<std::string, TriangleMesh> files_, assets_;
+  mutable std::map<std::string, MeshModelPtr> files_, assets_;
   mutable std::map<std::string, TexelsPtr> picture_files_, picture_assets_;
 };
 

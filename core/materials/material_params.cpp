@@ -39,7 +39,8 @@ TextureUse read_texture_use(Params& p, const TextureNames& textures, bool is_col
   TextureUse use{.texture = static_cast<int>(texture), .slot = kBumpSlot, .channel = TextureChannel::rgb};
   use.channel =
       static_cast<TextureChannel>(std::find(kChannels.begin(), kChannels.end(), channel) - kChannels.begin());
-  use.scale = p.number("scale", "Factor of the value.", kFactors, 1.0);
+  use.scale = Vec3d(p.number("scale", "Factor of the value.", kFactors, 1.0));
+  if (is_color) use.scale = use.scale * p.color("tint", "Colour that multiplies the value.", Vec3d(1));
   use.offset = p.number("offset", "Number that is added to the scaled value.", kFactors, 0.0);
   if (!is_color && use.channel == TextureChannel::rgb)
     p.fail("channel", "must be luminance, red, green or blue for a number (got \"rgb\")");
@@ -58,8 +59,8 @@ void read_bump(Params& p, const TextureNames& textures, std::vector<TextureUse>&
         use.texture = static_cast<int>(bump.reference("texture", "Name of the texture.", textures.names));
         use.slot = kBumpSlot;
         use.channel = TextureChannel::luminance;
-        use.scale = bump.number("scale", "Height in metres where the luminance is 1.",
-                                {.min = -kMaxLength, .max = kMaxLength});
+        use.scale = Vec3d(bump.number("scale", "Height in metres where the luminance is 1.",
+                                      {.min = -kMaxLength, .max = kMaxLength}));
         uses.push_back(use);
       });
 }
@@ -154,7 +155,7 @@ void MaterialParams::coefficient_like(Vec3d& into, std::string_view key, std::st
   use.least = {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
   use.most = largest(a, b);
   use.offset = use.offset * scale + offset;
-  use.scale *= scale;
+  use.scale = use.scale * scale;
   into = use.least;
   uses_.push_back(use);
 }

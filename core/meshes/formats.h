@@ -7,17 +7,17 @@
 
 #include "core/base/error.h"
 #include "core/base/shorten.h"
-#include "core/meshes/mesh_file.h"
+#include "core/meshes/model.h"
 
 // Declarations shared by the readers of mesh formats.
 namespace orrery {
 
 // Reads a file of one format. `bytes` is the whole file without a byte order mark. Normals need not have unit
-// length: read_mesh() normalizes them. Throws the exceptions of read_mesh().
-TriangleMesh read_obj(std::string_view bytes, const MeshLimits& limits);
+// length: read_model() normalizes them. Throws the exceptions of read_model().
+MeshModel read_obj(std::string_view bytes, const MeshLimits& limits, const ReadNearby& nearby);
 TriangleMesh read_ply(std::string_view bytes, const MeshLimits& limits);
 TriangleMesh read_stl(std::string_view bytes, const MeshLimits& limits);
-TriangleMesh read_gltf(std::string_view bytes, const MeshLimits& limits, const ReadNearby& nearby);
+MeshModel read_gltf(std::string_view bytes, const MeshLimits& limits, const ReadNearby& nearby);
 
 // Returns the number of triangles of a binary STL, or 0 for any other file. The file must have room for the
 // count in the header, and may have a few bytes after the last triangle. A text file has no room, because its

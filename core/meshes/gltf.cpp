@@ -3,6 +3,7 @@
 #include "core/base/task_scope.h"
 #include "core/meshes/formats.h"
 #include "core/meshes/gltf_file.h"
+#include "core/meshes/gltf_materials.h"
 #include "core/meshes/gltf_transform.h"
 #include "core/meshes/text.h"
 
@@ -29,25 +30,28 @@ class SceneReader {
   SceneReader(std::string_view bytes, const MeshLimits& limits, const ReadNearby& nearby)
       : file_(bytes, nearby), limits_(limits) {}
 
-  TriangleMesh read() {
+  MeshModel read() {
     if (const auto required = file_.root().find("extensionsRequired"))
       for (std::size_t i = 0; i < required->size(); ++i)
         if (const GltfValue extension = required->item(i); !is_harmless(extension.text()))
           extension.fail("must be an extension that does not change geometry (got " +
                          excerpt(extension.text()) + ")");
+    materials_ = read_gltf_materials(file_);
     const GltfValue nodes = file_.root().at("nodes");
     place(nodes, roots(nodes));
-    if (!all_normals_) mesh_.normals.clear();
-    if (!all_uvs_) mesh_.uvs.clear();
+    for_each_attribute([&](auto& list, auto filler) {
+      if (!list.empty()) list.resize(mesh_.positions.size(), filler);
+    });
     add_notes();
-    return std::move(mesh_);
+    return {std::move(mesh_), std::move(materials_.materials), std::move(materials_.images)};
   }
 
  private:
   // Names the contents that are not modelled.
   void add_notes() {
+    mesh_.notes = std::move(materials_.notes);
     constexpr std::pair<const char*, const char*> kLists[] = {
-        {"materials", "materials"}, {"animations", "animations"}, {"skins", "skins"}, {"cameras", "cameras"}};
+        {"animations", "animations"}, {"skins", "skins"}, {"cameras", "cameras"}};
     for (const auto& [key, what] : kLists)
       if (const auto list = file_.root().find(key); list && list->size() > 0)
         mesh_.notes.push_back(grouped(list->size()) + " " + what + " are not modelled");
@@ -56,7 +60,8 @@ class SceneReader {
       mesh_.notes.push_back(grouped(without_surface_) + " primitives of points or lines are not rendered");
     if (const auto used = file_.root().find("extensionsUsed"))
       for (std::size_t i = 0; i < std::min<std::size_t>(used->size(), kMaxNamed); ++i)
-        if (const std::string& name = used->item(i).text(); name != "KHR_mesh_quantization")
+        if (const std::string& name = used->item(i).text();
+            name != "KHR_mesh_quantization" && !is_material_extension(name))
           mesh_.notes.push_back("extension " + excerpt(name) + " is not modelled");
   }
 
@@ -126,16 +131,33 @@ class SceneReader {
     if (primitive.find("targets")) has_morphs_ = true;
     const GltfValue attributes = primitive.at("attributes");
     const std::size_t first = mesh_.positions.size();
-    add_vertices(attributes, world_from_node);
+    MeshPart part{static_cast<std::uint32_t>(mesh_.triangles.size())};
+    const auto material = primitive.find("material");
+    if (material) {
+      file_.root().at("materials").item(material->integer());  // throws if there is no such material
+      part.material = static_cast<std::int32_t>(material->integer());
+    }
+    add_vertices(attributes, world_from_node, part);
     const auto indices = primitive.find("indices");
     std::vector<std::uint32_t> order = indices ? read_indices(*indices, first) : std::vector<std::uint32_t>();
     if (!indices)
       for (std::size_t i = first; i < mesh_.positions.size(); ++i)
         order.push_back(static_cast<std::uint32_t>(i));
     add_triangles(primitive, mode, order, scaled_determinant(world_from_node) < 0);
+    mesh_.parts.push_back(part);
   }
 
-  void add_vertices(const GltfValue& attributes, const Affined& world_from_node) {
+  template <class Visit>
+  void for_each_attribute(const Visit& visit) {
+    visit(mesh_.normals, Vec3d(0, 0, 1));
+    visit(mesh_.uvs, std::array<double, 2>{});
+    visit(mesh_.colors, Vec3d(1));
+  }
+
+  // Adds the vertices of a primitive, and records the attributes that they have. Vertices before them that
+  // lack an attribute receive a filler.
+  void add_vertices(const GltfValue& attributes, const Affined& world_from_node, MeshPart& part) {
+    const std::size_t first = mesh_.positions.size();
     const GltfNumbers positions = file_.accessor(attributes.at("POSITION"), "VEC3");
     check_vertices(mesh_.positions.size() + positions.count, limits_);
     for (std::size_t i = 0; i < positions.count; ++i) {
@@ -146,8 +168,9 @@ class SceneReader {
       mesh_.positions.push_back(p);
     }
     const auto normals = optional_accessor(attributes, "NORMAL", "VEC3", positions.count);
-    all_normals_ = all_normals_ && normals;
-    for (std::size_t i = 0; all_normals_ && i < positions.count; ++i) {
+    part.has_normals = normals.has_value();
+    if (normals) mesh_.normals.resize(first, Vec3d(0, 0, 1));
+    for (std::size_t i = 0; normals && i < positions.count; ++i) {
       checkpoint(i);
       const Vec3d n(normals->value(i, 0), normals->value(i, 1), normals->value(i, 2));
       const Vec3d turned = transformed_normal(world_from_node, n);
@@ -156,15 +179,39 @@ class SceneReader {
                         ")");
       mesh_.normals.push_back(turned);
     }
-    const auto uvs = optional_accessor(attributes, "TEXCOORD_0", "VEC2", positions.count);
-    all_uvs_ = all_uvs_ && uvs;
-    for (std::size_t i = 0; all_uvs_ && i < positions.count; ++i) {
+    const int set = part.material < 0 ? 0 : materials_.uv_sets[static_cast<std::size_t>(part.material)];
+    const auto uvs =
+        optional_accessor(attributes, ("TEXCOORD_" + std::to_string(set)).c_str(), "VEC2", positions.count);
+    part.has_uvs = uvs.has_value();
+    if (uvs) mesh_.uvs.resize(first);
+    for (std::size_t i = 0; uvs && i < positions.count; ++i) {
       checkpoint(i);
       const double u = uvs->value(i, 0), v = uvs->value(i, 1);
       if (!std::isfinite(u) || !std::isfinite(v))
         attributes.fail("texture coordinates must be finite (got (" + text_of(u) + ", " + text_of(v) +
                         ") at vertex " + std::to_string(i) + ")");
       mesh_.uvs.push_back({u, 1 - v});
+    }
+    add_colors(attributes, first, part);
+  }
+
+  // Adds the colours of the vertices from `first` on. Colours with an alpha lose it.
+  void add_colors(const GltfValue& attributes, std::size_t first, MeshPart& part) {
+    const auto index = attributes.find("COLOR_0");
+    if (!index) return;
+    const std::string& type = file_.root().at("accessors").item(index->integer()).at("type").text();
+    const std::size_t count = mesh_.positions.size() - first;
+    const auto colors = optional_accessor(attributes, "COLOR_0", type == "VEC4" ? "VEC4" : "VEC3", count);
+    part.has_colors = true;
+    mesh_.colors.resize(first, Vec3d(1));
+    for (std::size_t i = 0; i < count; ++i) {
+      checkpoint(i);
+      const Vec3d color(colors->value(i, 0), colors->value(i, 1), colors->value(i, 2));
+      const auto in_range = [](double x) { return x >= 0 && x <= 1; };
+      if (!in_range(color.x) || !in_range(color.y) || !in_range(color.z))
+        index->fail("colours must be from 0 to 1 (got " + text_of(color) + " at vertex " + std::to_string(i) +
+                    ")");
+      mesh_.colors.push_back(color);
     }
   }
 
@@ -218,14 +265,14 @@ class SceneReader {
   GltfFile file_;
   const MeshLimits& limits_;
   TriangleMesh mesh_;
-  bool all_normals_ = true, all_uvs_ = true;  // true if every primitive already read has normals or uvs
+  GltfMaterials materials_;
   std::size_t placed_ = 0, without_surface_ = 0;
   bool has_morphs_ = false;
 };
 
 }  // namespace
 
-TriangleMesh read_gltf(std::string_view bytes, const MeshLimits& limits, const ReadNearby& nearby) {
+MeshModel read_gltf(std::string_view bytes, const MeshLimits& limits, const ReadNearby& nearby) {
   return SceneReader(bytes, limits, nearby).read();
 }
 

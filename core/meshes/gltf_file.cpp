@@ -130,7 +130,9 @@ std::string decode_percent(const std::string& text) {
   return decoded;
 }
 
-std::size_t components_of(std::string_view type) { return type == "SCALAR" ? 1 : type == "VEC2" ? 2 : 3; }
+std::size_t components_of(std::string_view type) {
+  return type == "SCALAR" ? 1 : type == "VEC2" ? 2 : type == "VEC3" ? 3 : 4;
+}
 
 // Maximum size of all files that a file names.
 constexpr std::size_t kMaxFileBytes = std::size_t{1} << 30;
@@ -174,6 +176,11 @@ std::string_view GltfFile::bytes_of(const GltfValue& uri) {
   } catch (const InputError& error) {
     uri.fail(error.problems().front().detail);
   }
+}
+
+std::string_view GltfFile::image_bytes(const GltfValue& image) {
+  if (const auto uri = image.find("uri")) return bytes_of(*uri);
+  return view(image.at("bufferView"));
 }
 
 std::string_view GltfFile::buffer(const GltfValue& user) {

@@ -34,8 +34,11 @@ class GltfFile {
 
   // Returns the numbers of the accessor whose index is the value `user`, with the replacements of a sparse
   // accessor. Throws InputError if there is no such accessor, an element is outside the buffer view, or the
-  // type is not `type` ("SCALAR", "VEC2" or "VEC3").
+  // type is not `type` ("SCALAR", "VEC2", "VEC3" or "VEC4").
   GltfNumbers accessor(const GltfValue& user, std::string_view type);
+
+  // Returns the bytes of an image. Throws InputError if they cannot be read.
+  std::string_view image_bytes(const GltfValue& image);
 
  private:
   struct Buffer {

@@ -15,9 +15,10 @@ constexpr std::size_t kMaxDepth = 32;          // levels; geometry needs 6
 constexpr std::size_t kMaxValues = 1'000'000;  // a value takes 16 to 80 bytes of memory
 
 constexpr std::string_view kTopKeys[] = {"asset", "scene", "scenes", "nodes", "meshes", "accessors",
-                                         "bufferViews", "buffers", "extensionsRequired",
+                                         "bufferViews", "buffers", "extensionsRequired", "materials",
+                                         "textures", "images", "samplers",
                                          // Only for notes:
-                                         "extensionsUsed", "materials", "animations", "skins", "cameras"};
+                                         "extensionsUsed", "animations", "skins", "cameras"};
 
 // Builds the document from parser events. Skips the values that neither geometry nor notes need. nlohmann's
 // callback parser would take quadratic time, because it searches a container for discarded values after each
@@ -43,7 +44,7 @@ class GltfBuilder final : public nlohmann::json_sax<nlohmann::json> {
     if (skipped_ > 0) return true;
     const bool is_top = depth() == 1;
     skips_next_ = is_top ? std::find(std::begin(kTopKeys), std::end(kTopKeys), name) == std::end(kTopKeys)
-                         : name == "extras" || name == "extensions";
+                         : name == "extras";
     key_ = std::move(name);
     return true;
   }

@@ -40,7 +40,7 @@ class GltfValue {
 // value is not an integer of at least 0.
 std::uint64_t integer_or(const GltfValue& object, const char* key, std::uint64_t fallback);
 
-// Parses the parts of a glTF document that geometry needs, without extras and extensions. Throws InputError
+// Parses the parts of a glTF document that models need, without extras. Throws InputError
 // if the text is not a valid JSON object, or if it has more than 32 levels or 1,000,000 values. Throws
 // Cancelled.
 nlohmann::json parse_gltf(std::string_view text);

@@ -99,12 +99,12 @@ std::string joined(const std::vector<std::string>& notes) {
   return text;
 }
 
-TriangleMesh read_as(MeshFormat format, std::string_view bytes, const MeshLimits& limits,
-                     const ReadNearby& nearby) {
+MeshModel read_as(MeshFormat format, std::string_view bytes, const MeshLimits& limits,
+                  const ReadNearby& nearby) {
   switch (format) {
-    case MeshFormat::obj: return read_obj(bytes, limits);
-    case MeshFormat::ply: return read_ply(bytes, limits);
-    case MeshFormat::stl: return read_stl(bytes, limits);
+    case MeshFormat::obj: return read_obj(bytes, limits, nearby);
+    case MeshFormat::ply: return {read_ply(bytes, limits), {}, {}};
+    case MeshFormat::stl: return {read_stl(bytes, limits), {}, {}};
     case MeshFormat::gltf: return read_gltf(bytes, limits, nearby);
   }
   return {};
@@ -131,16 +131,20 @@ MeshFormat mesh_format(std::string_view bytes) {
                            std::to_string(bytes.size()) + " bytes that begin with " + excerpt(bytes) + ")");
 }
 
-TriangleMesh read_mesh(std::string_view bytes, const MeshLimits& limits, const ReadNearby& nearby) {
+MeshModel read_model(std::string_view bytes, const MeshLimits& limits, const ReadNearby& nearby) {
   if (is_utf16(bytes) && binary_stl_triangles(bytes) == 0)
-    return read_mesh(utf8_of_utf16(bytes), limits, nearby);
+    return read_model(utf8_of_utf16(bytes), limits, nearby);
   const MeshFormat format = mesh_format(bytes);
   const bool is_text = binary_stl_triangles(bytes) == 0;  // a binary STL may begin with any bytes
-  TriangleMesh mesh = read_as(format, is_text ? without_byte_order_mark(bytes) : bytes, limits, nearby);
-  if (mesh.triangles.empty())
-    throw InputError("", "mesh must have at least 1 triangle (got 0" + joined(mesh.notes) + ")");
-  finish_normals(mesh);
-  return mesh;
+  MeshModel model = read_as(format, is_text ? without_byte_order_mark(bytes) : bytes, limits, nearby);
+  if (model.mesh.triangles.empty())
+    throw InputError("", "mesh must have at least 1 triangle (got 0" + joined(model.mesh.notes) + ")");
+  finish_normals(model.mesh);
+  return model;
+}
+
+TriangleMesh read_mesh(std::string_view bytes, const MeshLimits& limits, const ReadNearby& nearby) {
+  return whole_of(read_model(bytes, limits, nearby).mesh);
 }
 
 }  // namespace orrery

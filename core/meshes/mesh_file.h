@@ -14,12 +14,24 @@
 // Functions throw InputError for invalid files, Cancelled, and std::bad_alloc.
 namespace orrery {
 
+// Consecutive triangles of a mesh with the same material.
+struct MeshPart {
+  std::uint32_t first_triangle;
+  std::int32_t material = -1;  // number in the file, or -1
+  // Whether the vertices of the part have these attributes. Otherwise, the entries of the mesh are unused.
+  bool has_normals = false, has_uvs = false, has_colors = false;
+};
+
 // Triangle mesh, in the axes and units of the file. One unit is taken as one metre.
 struct TriangleMesh {
   std::vector<Vec3d> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;  // anticlockwise seen from the front
   std::vector<Vec3d> normals;                           // per position, unit; or empty
   std::vector<std::array<double, 2>> uvs;               // per position, (0, 0) lower left; or empty
+  std::vector<Vec3d> colors = {};                       // per position, linear, 0 to 1; or empty
+  // Parts by ascending triangle, the first of which begins at triangle 0. Empty: one part without a material
+  // that has the attributes whose lists are not empty.
+  std::vector<MeshPart> parts = {};
   // Sentences without a full stop about contents of the file that the mesh lacks, or that were repaired.
   std::vector<std::string> notes = {};
 };
@@ -48,12 +60,13 @@ MeshFormat mesh_format(std::string_view bytes);
 // of glTF files that are neither in the file nor in data: URIs are read by `nearby`; without it, they are an
 // error. The same bytes give the same mesh.
 //
-// Merges all geometry of the file into one mesh. Its notes name the contents that it lacks, such as
-// materials. Divides polygons into triangles: see divide_polygons(). Keeps triangles without area. Keeps
-// normals only if all vertices have normals, and keeps uvs only if all vertices have uvs. Replaces
-// zero-length normals with normals computed from the faces around the vertex. A mesh from STL has no normals
-// and no uvs. Corners of an STL file at equal positions become one vertex. Replaces v of glTF by 1 - v, so
-// that (0, 0) is at the lower left.
+// Merges all geometry of the file into one mesh without parts. Its notes name the contents that it lacks,
+// such as animations. read_model() in core/meshes/model.h reads the parts and their materials, too. Divides
+// polygons into triangles: see divide_polygons(). Keeps triangles without area. Keeps normals only if all
+// vertices have normals, and keeps uvs only if all vertices have uvs. Replaces zero-length normals with
+// normals computed from the faces around the vertex. A mesh from STL has no normals and no uvs. Corners of an
+// STL file at equal positions become one vertex. Replaces v of glTF by 1 - v, so that (0, 0) is at the lower
+// left.
 //
 // Throws InputError (pointer "") with the place in the file, the value and the limit. Before allocating
 // memory, checks every size in the file against `limits` and the number of available bytes. Throws Cancelled.

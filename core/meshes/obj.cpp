@@ -165,8 +165,8 @@ class ObjReader {
 
 }  // namespace
 
-TriangleMesh read_obj(std::string_view bytes, const MeshLimits& limits) {
-  return ObjReader(bytes, limits).read();
+MeshModel read_obj(std::string_view bytes, const MeshLimits& limits, const ReadNearby&) {
+  return {ObjReader(bytes, limits).read(), {}, {}};
 }
 
 }  // namespace orrery

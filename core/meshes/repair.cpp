@@ -56,11 +56,13 @@ void drop_unused(TriangleMesh& mesh) {
     mesh.positions[kept] = mesh.positions[v];
     if (!mesh.normals.empty()) mesh.normals[kept] = mesh.normals[v];
     if (!mesh.uvs.empty()) mesh.uvs[kept] = mesh.uvs[v];
+    if (!mesh.colors.empty()) mesh.colors[kept] = mesh.colors[v];
     ++kept;
   }
   mesh.positions.resize(kept);
   if (!mesh.normals.empty()) mesh.normals.resize(kept);
   if (!mesh.uvs.empty()) mesh.uvs.resize(kept);
+  if (!mesh.colors.empty()) mesh.colors.resize(kept);
   for (auto& triangle : mesh.triangles)
     for (std::uint32_t& vertex : triangle) vertex = place[vertex];
 }

@@ -112,7 +112,7 @@ void smooth_normals(TriangleMesh& mesh, double crease_degrees, const PositionInd
   const Corners corners(mesh, places);
   const Facets facets(mesh);
   const double min_cosine = sine_cosine_degrees(crease_degrees).cosine;
-  VertexList vertices(true, !mesh.uvs.empty());
+  VertexList vertices(true, !mesh.uvs.empty(), !mesh.colors.empty());
   std::vector<std::array<std::uint32_t, 3>> triangles = mesh.triangles;
   for (std::uint32_t t = 0; t < triangles.size(); ++t)
     for (std::uint32_t k = 0; k < 3; ++k) {

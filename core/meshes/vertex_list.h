@@ -8,23 +8,26 @@ namespace orrery {
 struct Vertex {
   Vec3d position, normal;
   std::array<double, 2> uv{};
+  Vec3d color = {};
 
   bool operator==(const Vertex&) const = default;  // -0 equals 0
 };
 
-// Returns vertex i of a mesh, with 0 for missing normals and uvs.
+// Returns vertex i of a mesh, with 0 for missing attributes.
 inline Vertex vertex_of(const TriangleMesh& mesh, std::size_t i) {
   Vertex vertex;
   vertex.position = mesh.positions[i];
   if (!mesh.normals.empty()) vertex.normal = mesh.normals[i];
   if (!mesh.uvs.empty()) vertex.uv = mesh.uvs[i];
+  if (!mesh.colors.empty()) vertex.color = mesh.colors[i];
   return vertex;
 }
 
 // List of distinct vertices, in order of first occurrence. Not thread-safe. add() throws Cancelled.
 class VertexList {
  public:
-  VertexList(bool with_normals, bool with_uvs) : with_normals_(with_normals), with_uvs_(with_uvs) {}
+  VertexList(bool with_normals, bool with_uvs, bool with_colors = false)
+      : with_normals_(with_normals), with_uvs_(with_uvs), with_colors_(with_colors) {}
 
   // Returns the index of `vertex` in the list. Appends the vertex if the list does not contain it. REQUIRES:
   // `vertex` is finite, values that the list does not store are 0, and the list has fewer than 2^31 vertices.
@@ -34,7 +37,7 @@ class VertexList {
   TriangleMesh take() { return std::move(mesh_); }
 
  private:
-  bool with_normals_, with_uvs_;
+  bool with_normals_, with_uvs_, with_colors_;
   TriangleMesh mesh_;
   IndexTable table_;
 };

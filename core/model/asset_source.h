@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/image/decode/picture.h"
-#include "core/meshes/mesh_file.h"
+#include "core/meshes/model.h"
 
 namespace orrery {
 
@@ -18,10 +18,10 @@ class AssetSource {
   virtual ~AssetSource() = default;
 
   // Returns the contents of a file in or below the folder of the scene file.
-  virtual TriangleMesh mesh_file(const std::string& /*name*/) const { refuse_files(); }
+  virtual MeshModelPtr model_file(const std::string& /*name*/) const { refuse_files(); }
   virtual TexelsPtr picture_file(const std::string& /*name*/) const { refuse_files(); }
   // Returns an uploaded asset by the SHA-256 of its bytes, in hexadecimal.
-  virtual TriangleMesh mesh_asset(const std::string& /*sha256*/) const { refuse_assets(); }
+  virtual MeshModelPtr model_asset(const std::string& /*sha256*/) const { refuse_assets(); }
   virtual TexelsPtr picture_asset(const std::string& /*sha256*/) const { refuse_assets(); }
 
  private:
@@ -32,6 +32,17 @@ class AssetSource {
   [[noreturn]] static void refuse_assets() {
     throw InputError("", "assets exist only on a server; use \"file\" instead");
   }
+};
+
+// Source of one model that was already read, for any name.
+class OneModel final : public AssetSource {
+ public:
+  explicit OneModel(MeshModelPtr model) : model_(std::move(model)) {}
+  MeshModelPtr model_file(const std::string&) const override { return model_; }
+  MeshModelPtr model_asset(const std::string&) const override { return model_; }
+
+ private:
+  MeshModelPtr model_;
 };
 
 // Source of the meshes of a scene, with running totals, because limits apply to all meshes of a scene

@@ -85,14 +85,15 @@ enum class TextureChannel { rgb, luminance, red, green, blue };
 // Slot of bump maps: see TextureUse.
 inline constexpr int kBumpSlot = -1;
 
-// Use of a texture by one parameter of one material: offset + scale * channel of the texture, clamped to the
-// bounds [least, most], which differ from the exact bounds by rounding only. `slot` numbers the parameters of
-// a material type from 0. A bump map has the slot kBumpSlot and a scale in metres.
+// Use of a texture by one parameter of one material: offset + scale * channel of the texture, per channel of
+// a colour, clamped to the bounds [least, most], which differ from the exact bounds by rounding only. `slot`
+// numbers the parameters of a material type from 0. A bump map has the slot kBumpSlot and a scale in metres.
 struct TextureUse {
   int texture;
   int slot;
   TextureChannel channel;
-  double scale = 1, offset = 0;
+  Vec3d scale{1.0};
+  double offset = 0;
   Vec3d least{-std::numeric_limits<double>::infinity()}, most{std::numeric_limits<double>::infinity()};
   int material = 0;  // number in the scene
 };

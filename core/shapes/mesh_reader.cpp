@@ -44,11 +44,23 @@ TriangleMesh read_inline(Params& p) {
   return mesh;
 }
 
-// As read_named(). Rejects coordinates above kMaxCoordinate, too.
+// Materials of a file have smaller numbers.
+constexpr std::int64_t kMaxPart = 1'000'000;
+
+TriangleMesh part_or_whole(const MeshModel& model, std::optional<int> part) {
+  if (!part) return whole_of(model.mesh);
+  TriangleMesh mesh = part_of(model.mesh, *part);
+  if (mesh.triangles.empty())
+    throw InputError("", "must have triangles of material " + std::to_string(*part) + ", as \"part\" states");
+  return mesh;
+}
+
+// Reads a mesh from the file `name`: see read_named(). Rejects coordinates above kMaxCoordinate, too.
 template <class Read>
-TriangleMesh read_elsewhere(Params& p, const char* key, const std::string& name, const Read& read) {
+TriangleMesh read_elsewhere(Params& p, const char* key, const std::string& name, std::optional<int> part,
+                            const Read& read) {
   return read_named(p, key, name, [&](const std::string& n) {
-    TriangleMesh mesh = read(n);
+    TriangleMesh mesh = part_or_whole(*read(n), part);
     for (const Vec3d& v : mesh.positions)
       if (!(max_component(abs(v)) <= kMaxCoordinate))
         throw InputError("", "coordinates must be at most 1e12 m in magnitude (got " +
@@ -64,11 +76,20 @@ std::string file_name(Params& p, const char* fallback = nullptr) {
 std::string asset_name(Params& p, const char* fallback = nullptr) {
   return p.text("asset", "SHA-256 of an uploaded OBJ, PLY, STL or glTF file.", 64, fallback);
 }
-TriangleMesh read_file(Params& p, const AssetSource& source, const std::string& name) {
-  return read_elsewhere(p, "file", name, [&](const std::string& n) { return source.mesh_file(n); });
+std::optional<int> read_part(Params& p) {
+  const std::int64_t part = p.integer("part",
+                                      "Number of a material of the file whose triangles to read, from 0; -1: "
+                                      "triangles without a material; default: all triangles.",
+                                      -1, kMaxPart, derived(std::int64_t{-1}));
+  return p.has("part") ? std::optional(static_cast<int>(part)) : std::nullopt;
 }
-TriangleMesh read_asset(Params& p, const AssetSource& source, const std::string& name) {
-  return read_elsewhere(p, "asset", name, [&](const std::string& n) { return source.mesh_asset(n); });
+TriangleMesh read_file(Params& p, const AssetSource& source, const std::string& name,
+                       std::optional<int> part) {
+  return read_elsewhere(p, "file", name, part, [&](const std::string& n) { return source.model_file(n); });
+}
+TriangleMesh read_asset(Params& p, const AssetSource& source, const std::string& name,
+                        std::optional<int> part) {
+  return read_elsewhere(p, "asset", name, part, [&](const std::string& n) { return source.model_asset(n); });
 }
 
 SharedVectors share(std::vector<Vec3d> vectors) {
@@ -82,8 +103,15 @@ MeshObject MeshReader::read(Params& p) {
   TriangleMesh& mesh = object.mesh;
   switch (p.form({{"positions", "indices"}, {"file"}, {"asset"}})) {
     case 0: mesh = read_inline(p); break;
-    case 1: mesh = read_file(p, source_.assets, file_name(p)); break;
-    default: mesh = read_asset(p, source_.assets, asset_name(p));
+    case 1: {
+      const std::string name = file_name(p);
+      mesh = read_file(p, source_.assets, name, read_part(p));
+      break;
+    }
+    default: {
+      const std::string name = asset_name(p);
+      mesh = read_asset(p, source_.assets, name, read_part(p));
+    }
   }
   const double crease =
       p.number("crease_degrees",
@@ -107,12 +135,13 @@ VertexKey MeshReader::read_key(Params& p, const TriangleMesh& rest, const Vertex
   std::vector<Vec3d> normals = p.directions(
       "normals", "Shading normal of each vertex, if the mesh has normals.", {0, kLimits.vertices});
   const std::string file = file_name(p, ""), asset = asset_name(p, "");
+  const std::optional<int> part = read_part(p);
   if (p.has("positions") + p.has("file") + p.has("asset") > 1)
     p.fail("", "must have at most one of positions, file and asset");
   if (!fits(rest.positions.size(), rest.triangles.size(), p)) return at_rest;
   if (p.has("file") || p.has("asset")) {
     TriangleMesh mesh =
-        p.has("file") ? read_file(p, source_.assets, file) : read_asset(p, source_.assets, asset);
+        p.has("file") ? read_file(p, source_.assets, file, part) : read_asset(p, source_.assets, asset, part);
     if (mesh.triangles != rest.triangles)
       p.fail("", "must have the same " + std::to_string(rest.triangles.size()) +
                      " triangles with the same vertex indices as the mesh without motion (got " +

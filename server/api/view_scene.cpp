@@ -192,29 +192,26 @@ ImageSize view_size(const RenderRequest& request) {
   return {request.width.value_or(kSize), request.height.value_or(kSize)};
 }
 
-Json view_scene(const TriangleMesh& mesh, MeshFormat format, const ModelReference& model,
+Json view_scene(const MeshModel& model, MeshFormat format, const ModelReference& reference,
                 const ViewOptions& options, int width, int height) {
   const StudioAxes axes = StudioAxes::with_up(options.up.value_or(usual_up(format)));
-  const std::vector<Vec3d> corners = corners_of(mesh);
+  const std::vector<Vec3d> corners = corners_of(model.mesh);
   const Framing framing = frame_points(corners, {.axes = axes,
                                                  .from = options.from,
                                                  .aspect = static_cast<double>(width) / height,
                                                  .fov_degrees = options.orthographic ? 0 : kFieldOfView,
                                                  .margin = kMargin,
                                                  .fit = options.fit});
-  Json object{{"type", "mesh"}, {model.key, model.name}, {"material", "model"}};
-  if (mesh.normals.empty()) object["crease_degrees"] = kCreaseDegrees;
-
-  Json scene{{"version", 1}, {"title", shortened(model.title, 200)}};
+  Json scene{{"version", 1}, {"title", shortened(reference.title, 200)}};
   scene["camera"] = camera_json(framing, options.orthographic);
   scene["image"] = {{"width", width}, {"height", height}};
   scene["environment"] = {{"type", "constant"}, {"radiance", numbers(Vec3d(kSurroundings))}};
-  scene["materials"]["model"] = {{"type", "lambert"}, {"reflectance", kModelReflectance}};
   scene["lights"] = {{{"type", "directional"},
                       {"direction_to_light", numbers(key_direction(axes, options.from))},
                       {"intensity", numbers(Vec3d(kKeyLight))},
                       {"angle_degrees", kKeyWidth}}};
-  scene["objects"] = {std::move(object)};
+  add_model(scene, model, reference, {{"type", "lambert"}, {"reflectance", kModelReflectance}},
+            kCreaseDegrees);
   add_ground(scene, options, axes, corners, framing.eye);
   // In the open, sharing paths costs more than it gains.
   scene["render"] = {{"technique", "path"}, {"max_depth", 4}, {"path_reuse", 1}};

@@ -7,9 +7,9 @@
 #include <string_view>
 
 #include "core/framing/framing.h"
-#include "core/meshes/mesh_file.h"
 #include "core/params/document.h"
 #include "core/plan/request.h"
+#include "server/api/model_materials.h"
 
 namespace orrery {
 
@@ -47,17 +47,11 @@ ImageSize view_size(const RenderRequest& request);
 // Direction that is up in files of this format, unless their makers agreed otherwise.
 Vec3d usual_up(MeshFormat format);
 
-// File of a model as a scene refers to it.
-struct ModelReference {
-  const char* key;    // "file" or "asset"
-  std::string name;   // value of the key
-  std::string title;  // title of the scene
-};
-
 // Returns a scene with the model, a camera that frames it exactly in an image of this size, uniform light
 // from all directions and a soft key light from the upper left of the camera. Meshes without normals are
-// smooth across edges of less than 30 degrees. REQUIRES: the mesh has triangles.
-nlohmann::ordered_json view_scene(const TriangleMesh& mesh, MeshFormat format, const ModelReference& model,
+// smooth across edges of less than 30 degrees. Models without materials are grey. REQUIRES: the mesh has
+// triangles.
+nlohmann::ordered_json view_scene(const MeshModel& model, MeshFormat format, const ModelReference& reference,
                                   const ViewOptions& options, int width, int height);
 
 }  // namespace orrery

@@ -111,8 +111,8 @@ AssetStore::AssetPtr AssetStore::find_for_scene(const std::string& sha256) const
   return *found;
 }
 
-TriangleMesh AssetStore::mesh_asset(const std::string& sha256) const {
-  return read_mesh(find_for_scene(sha256)->bytes);
+MeshModelPtr AssetStore::model_asset(const std::string& sha256) const {
+  return std::make_shared<const MeshModel>(read_model(find_for_scene(sha256)->bytes));
 }
 
 TexelsPtr AssetStore::picture_asset(const std::string& sha256) const {

@@ -28,20 +28,29 @@ struct InspectOptions {
 
 nlohmann::ordered_json numbers(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
+nlohmann::ordered_json material_names(const MeshModel& model) {
+  nlohmann::ordered_json names = nlohmann::ordered_json::array();
+  for (const ModelMaterial& material : model.materials) names.push_back(material.name);
+  return names;
+}
+
 nlohmann::ordered_json inspection_json(const ModelFile& model, const MeshInspection& found) {
   return {{"format", name_of(model.format)},
           {"bytes", model.bytes},
-          {"vertices", model.mesh.positions.size()},
-          {"triangles", model.mesh.triangles.size()},
+          {"vertices", model.model->mesh.positions.size()},
+          {"triangles", model.model->mesh.triangles.size()},
           {"triangles_without_area", found.triangles_without_area},
           {"min", numbers(found.bounds.lo)},
           {"max", numbers(found.bounds.hi)},
           {"watertight", found.watertight},
           {"area", found.area},
           {"volume", found.watertight ? nlohmann::ordered_json(found.volume) : nullptr},
-          {"normals", !model.mesh.normals.empty()},
-          {"texture_coordinates", !model.mesh.uvs.empty()},
-          {"notes", model.mesh.notes}};
+          {"normals", !model.model->mesh.normals.empty()},
+          {"texture_coordinates", !model.model->mesh.uvs.empty()},
+          {"vertex_colors", !model.model->mesh.colors.empty()},
+          {"materials", material_names(*model.model)},
+          {"images", model.model->images.size()},
+          {"notes", model.model->mesh.notes}};
 }
 
 std::string row(const char* name, const std::string& text) {
@@ -54,7 +63,7 @@ std::string text_of(const Vec3d& v) {
 }
 
 std::string inspection_text(const ModelFile& model, const MeshInspection& found) {
-  const TriangleMesh& mesh = model.mesh;
+  const TriangleMesh& mesh = model.model->mesh;
   const Vec3d size = found.bounds.hi - found.bounds.lo;
   std::string text =
       row("format", std::string(name_of(model.format)) + ", " + grouped(model.bytes) + " bytes");
@@ -63,7 +72,10 @@ std::string inspection_text(const ModelFile& model, const MeshInspection& found)
                                     ? ", " + grouped(found.triangles_without_area) + " of them without area"
                                     : ""));
   text += row("vertices", grouped(mesh.positions.size()) + (mesh.normals.empty() ? "" : ", with normals") +
-                              (mesh.uvs.empty() ? "" : ", with texture coordinates"));
+                              (mesh.uvs.empty() ? "" : ", with texture coordinates") +
+                              (mesh.colors.empty() ? "" : ", with colours"));
+  if (const std::size_t count = model.model->materials.size(); count > 0)
+    text += row("materials", grouped(count) + ", with " + grouped(model.model->images.size()) + " images");
   text += row("size", number_text(size.x) + " x " + number_text(size.y) + " x " + number_text(size.z));
   text += row("box", text_of(found.bounds.lo) + " to " + text_of(found.bounds.hi));
   text += row("watertight", found.watertight ? "yes, volume " + number_text(found.volume) : "no");
@@ -74,7 +86,7 @@ std::string inspection_text(const ModelFile& model, const MeshInspection& found)
 
 int inspect(const InspectOptions& options) {
   const ModelFile model = read_model_file(options.model);
-  const MeshInspection found = inspect_mesh(model.mesh);
+  const MeshInspection found = inspect_mesh(model.model->mesh);
   std::cout << (options.json ? inspection_json(model, found).dump(2) + "\n" : inspection_text(model, found));
   return kDone;
 }

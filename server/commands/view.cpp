@@ -36,19 +36,8 @@ struct ViewFlags {
   RenderOptions render;
 };
 
-// A model that was already read, under the name of its file.
-class ReadModel final : public AssetSource {
- public:
-  explicit ReadModel(TriangleMesh mesh) : mesh_(std::move(mesh)) {}
-  TriangleMesh mesh_file(const std::string&) const override { return mesh_; }
-  const TriangleMesh& mesh() const { return mesh_; }
-
- private:
-  const TriangleMesh mesh_;
-};
-
 struct View {
-  ReadModel model;
+  OneModel model;
   nlohmann::ordered_json scene;
 };
 
@@ -76,12 +65,12 @@ View view_of(const ViewFlags& flags, const RenderRequest& request) {
   const ViewOptions options = options_of(flags);
   const std::string& path = flags.render.render.scene;
   ModelFile file = read_model_file(path);
-  View view{ReadModel(std::move(file.mesh)), {}};
-  for (const std::string& note : view.model.mesh().notes)
+  View view{OneModel(file.model), {}};
+  for (const std::string& note : file.model->mesh.notes)
     std::cerr << "orrery: warning: " << path << ": " << note << "\n";
   const std::string name = path == "-" ? "model" : std::filesystem::path(path).filename().string();
   const auto [width, height] = view_size(request);
-  view.scene = view_scene(view.model.mesh(), file.format, {"file", name, name}, options, width, height);
+  view.scene = view_scene(*file.model, file.format, {"file", name, name}, options, width, height);
   return view;
 }
 

@@ -13,7 +13,7 @@
 namespace orrery {
 namespace {
 
-constexpr std::int64_t kUnderWay = 3;  // maximum frames in memory: one being rendered, two being encoded
+constexpr std::int64_t kMaxFrames = 3;  // maximum frames in memory: one being rendered, two being encoded
 
 // Queue of frames between rendering and delivery. Frames are encoded in parallel and delivered in order.
 class Line {
@@ -25,7 +25,7 @@ class Line {
   // Waits until another frame may be rendered. Returns false if an earlier frame failed.
   bool wait_for_room() {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return entered_ - left_ < kUnderWay; });
+    changed_.wait(lock, [&] { return entered_ - left_ < kMaxFrames; });
     return !error_;
   }
 

@@ -27,21 +27,16 @@ constexpr const char* kScene =
         "materials": {"m": {"type": "rough"}}, "lights": [{"type": "directional", "direction_to_light": [1, 1, 1]}],
         "objects": [{"type": "mesh", "material": "m", "file": "the mesh"}]})";
 
-class InMemory final : public AssetSource {
- public:
-  explicit InMemory(const Mesh& mesh) {
-    for (const Vec3f& p : mesh.positions) mesh_.positions.push_back(Vec3d(p));
-    for (const auto& t : mesh.triangles) mesh_.triangles.push_back({t[0], t[1], t[2]});
-  }
-  TriangleMesh mesh_file(const std::string&) const override { return mesh_; }
-
- private:
-  TriangleMesh mesh_;
-};
+OneModel in_memory(const Mesh& mesh) {
+  TriangleMesh copy;
+  for (const Vec3f& p : mesh.positions) copy.positions.push_back(Vec3d(p));
+  for (const auto& t : mesh.triangles) copy.triangles.push_back({t[0], t[1], t[2]});
+  return OneModel(model_of(std::move(copy)));
+}
 
 class Ours {
  public:
-  Ours(const Mesh& mesh, std::string_view structure) : prepared_(load_scene(kScene, InMemory(mesh))) {
+  Ours(const Mesh& mesh, std::string_view structure) : prepared_(load_scene(kScene, in_memory(mesh))) {
     for (const auto& type : accelerator_types())
       if (type.name == structure) type_ = &type;
     if (!type_) throw Error("unknown structure " + std::string(structure));

@@ -18,17 +18,17 @@ TriangleMesh roof() {
 
 class Shelf final : public AssetSource {
  public:
-  TriangleMesh mesh_file(const std::string& name) const override {
+  MeshModelPtr model_file(const std::string& name) const override {
     if (name != "roof.obj") throw InputError("", "cannot read " + name);
-    return roof();
+    return model_of(roof());
   }
-  TriangleMesh mesh_asset(const std::string& sha256) const override {
+  MeshModelPtr model_asset(const std::string& sha256) const override {
     if (sha256 == "far") {
       TriangleMesh mesh = roof();
       mesh.positions[3].x = 1e13;
-      return mesh;
+      return model_of(mesh);
     }
-    return AssetSource::mesh_asset(sha256);
+    return AssetSource::model_asset(sha256);
   }
 };
 
@@ -106,9 +106,9 @@ TEST(AssetFiles, SmoothsEdgesBelowCreaseAngle) {
 TEST(AssetFiles, ReadsEachFileOncePerLoad) {
   class Counting final : public AssetSource {
    public:
-    TriangleMesh mesh_file(const std::string&) const override {
+    MeshModelPtr model_file(const std::string&) const override {
       ++reads;
-      return roof();
+      return model_of(roof());
     }
     mutable int reads = 0;
   };
@@ -122,10 +122,10 @@ TEST(AssetFiles, ReadsEachFileOncePerLoad) {
 TEST(AssetFiles, RejectsTotalVerticesAboveLimit) {
   class Dots final : public AssetSource {
    public:
-    TriangleMesh mesh_file(const std::string&) const override {
+    MeshModelPtr model_file(const std::string&) const override {
       TriangleMesh mesh = roof();
       mesh.positions.resize(4'000'000);
-      return mesh;
+      return model_of(mesh);
     }
   };
   const char* const three =

@@ -61,13 +61,13 @@ TEST(LoadMotion, RejectsInvalidKeyframes) {
 
 class Stages final : public AssetSource {
  public:
-  TriangleMesh mesh_file(const std::string& name) const override {
+  MeshModelPtr model_file(const std::string& name) const override {
     TriangleMesh mesh;
     mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, name == "a.obj" ? 0.0 : 2.0}};
     mesh.triangles = {{0, 1, 2}};
     if (name == "turned.obj") mesh.triangles = {{0, 2, 1}};
     if (name == "larger.obj") mesh.positions.push_back({9, 9, 9});
-    return mesh;
+    return model_of(mesh);
   }
 };
 
@@ -97,12 +97,12 @@ TEST(LoadMotion, RejectsKeyframeFilesOfOtherTopology) {
 class LargeMeshSource final : public AssetSource {
  public:
   mutable int read = 0;
-  TriangleMesh mesh_file(const std::string&) const override {
+  MeshModelPtr model_file(const std::string&) const override {
     ++read;
     TriangleMesh mesh;
     mesh.positions.resize(100'000, Vec3d(1, 2, 3));
     mesh.triangles = {{0, 1, 2}};
-    return mesh;
+    return model_of(mesh);
   }
 };
 

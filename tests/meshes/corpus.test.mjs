@@ -31,6 +31,10 @@ const kRejected = new Map([
   ["RecursiveNodes.gltf", "nodes must form a tree"],
   ["sceneWrongType.gltf", "/scene: must be an integer"],
   ["badArray.gltf", "/meshes/0/primitives: must be an array"],
+  ["badExtension.gltf", "KHR_texture_transform: must be an object"],
+  ["badNumber.gltf", '/materials/0/normalTexture: missing key "index"'],
+  ["badObject.gltf", "/materials/0/pbrMetallicRoughness: must be an object"],
+  ["badUint.gltf", "/materials/0/pbrMetallicRoughness/baseColorTexture/index: must be an integer"],
   ["IncorrectVertexArrays/Cube.gltf", "a multiple of 3 in mode 4 (got 35)"],
   // Files without surfaces.
   ...["00", "01", "02", "03", "07", "08", "09", "10"].map((mode) => [

@@ -16,7 +16,7 @@ std::string header(const std::string& format, const std::string& elements) {
 }
 const std::string kVertex = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
 const std::string kFace = "element face 1\nproperty list uchar int vertex_indices\n";
-const std::string kFour = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+const std::string kFourRows = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
 
 // Expects read_mesh() to read a mesh whose coordinates, list lengths and indices have the PLY type `type`, in
 // both byte orders. If the type is not an integer type, list lengths have the type char.
@@ -92,7 +92,7 @@ TEST(Ply, SplitsPolygonsAndSkipsOtherProperties) {
 }
 
 TEST(Ply, ReadsFacesBeforeVertices) {
-  EXPECT_EQ(read_mesh(header("ascii", kFace + kVertex) + "3 0 1 3\n" + kFour).triangles,
+  EXPECT_EQ(read_mesh(header("ascii", kFace + kVertex) + "3 0 1 3\n" + kFourRows).triangles,
             (std::vector<Triangle>{{0, 1, 3}}));
 }
 
@@ -133,7 +133,7 @@ TEST(Ply, ReportsLineOfHeaderErrors) {
   EXPECT_THAT(ascii(kFace), HasSubstr("must have exactly one element \"vertex\" (got 0)"));
   EXPECT_THAT(ascii("element vertex 0\nproperty float x\n" + kFace), HasSubstr("properties x, y and z"));
   EXPECT_THAT(ascii(kVertex + kVertex), HasSubstr("must have exactly one element \"vertex\" (got 2)"));
-  EXPECT_THAT(problem(header("ascii", kVertex + "element face 1\nproperty int a\n") + kFour + "1"),
+  EXPECT_THAT(problem(header("ascii", kVertex + "element face 1\nproperty int a\n") + kFourRows + "1"),
               HasSubstr("face must have a list property \"vertex_indices\""));
   std::string many = "element vertex 1\n";
   for (int i = 0; i < 1001; ++i) many += "property float a\n";
@@ -158,7 +158,7 @@ TEST(Ply, ChecksCountsAgainstFileSize) {
                   HasSubstr("element \"x\" must have"));
   }
   EXPECT_THAT(problem(header("ascii", kVertex + "element face 1\nproperty list uint int vertex_index\n") +
-                      kFour + "4000000000 0 1"),
+                      kFourRows + "4000000000 0 1"),
               HasSubstr("triangles (limit 10,000,000, mesh_triangles)"));
 }
 
@@ -166,14 +166,14 @@ TEST(Ply, ReportsPositionOfBodyErrors) {
   const auto ascii = [](const std::string& body) { return problem(header("ascii", kVertex + kFace) + body); };
   EXPECT_EQ(ascii("0 0 0\n1 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n"),
             "line 12: value must be a finite number (got \"nan\")");
-  EXPECT_EQ(ascii(kFour + "2 0 1 2 3\n"), "line 14: face 0 must have at least 3 corners (got 2)");
-  EXPECT_THAT(ascii(kFour + "3 0 1 4\n"),
+  EXPECT_EQ(ascii(kFourRows + "2 0 1 2 3\n"), "line 14: face 0 must have at least 3 corners (got 2)");
+  EXPECT_THAT(ascii(kFourRows + "3 0 1 4\n"),
               HasSubstr("line 14: vertex of face 0 must be an integer >= 0 and < 4 (got 4)"));
-  EXPECT_THAT(ascii(kFour + "3 0 1 -1\n"), HasSubstr("got -1"));
-  EXPECT_THAT(ascii(kFour + "3 0 1 1.5\n"), HasSubstr("got 1.5"));
-  EXPECT_THAT(ascii(kFour + "-3 0 1 1\n"),
+  EXPECT_THAT(ascii(kFourRows + "3 0 1 -1\n"), HasSubstr("got -1"));
+  EXPECT_THAT(ascii(kFourRows + "3 0 1 1.5\n"), HasSubstr("got 1.5"));
+  EXPECT_THAT(ascii(kFourRows + "-3 0 1 1\n"),
               HasSubstr("list length must be an integer from 0 to 4294967295 (got -3)"));
-  EXPECT_THAT(ascii(kFour + "4 0 1 2"), HasSubstr("got nothing"));
+  EXPECT_THAT(ascii(kFourRows + "4 0 1 2"), HasSubstr("got nothing"));
   std::string bytes = header("binary_little_endian",
                              "element vertex 1\nproperty float x\nproperty float y\n"
                              "property float z\n" +

@@ -35,10 +35,10 @@ Document balls(const std::string& title, int count) {
 // Asset source that returns one triangle and counts the reads.
 class CountedMeshes final : public AssetSource {
  public:
-  TriangleMesh mesh_asset(const std::string&) const override {
+  MeshModelPtr model_asset(const std::string&) const override {
     ++reads;
-    return {
-        .positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, .triangles = {{0, 1, 2}}, .normals = {}, .uvs = {}};
+    return model_of(
+        {.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, .triangles = {{0, 1, 2}}, .normals = {}, .uvs = {}});
   }
   mutable int reads = 0;
 };

@@ -41,15 +41,6 @@ TriangleMesh sheet(std::uint32_t side) {
   return mesh;
 }
 
-class OneMesh final : public AssetSource {
- public:
-  explicit OneMesh(TriangleMesh mesh) : mesh_(std::move(mesh)) {}
-  TriangleMesh mesh_file(const std::string&) const override { return mesh_; }
-
- private:
-  const TriangleMesh mesh_;
-};
-
 const char* kScene = R"({"version": 1,
   "camera": {"type": "perspective", "eye": [0.5, 1, 2], "look_at": [0.5, 0, 0.5]},
   "image": {"width": 2048, "height": 2048},
@@ -167,14 +158,14 @@ void measure_loading(int times) {
                                                        {"glTF", glb_of(mesh)}};
   for (const auto& [name, bytes] : files)
     measure(name, times, [&](const std::stop_token&) { read_mesh(bytes); });
-  const OneMesh source(mesh);
+  const OneModel source(model_of(mesh));
   measure("scene", times, [&](const std::stop_token&) { load_scene(scene_text(""), source); });
   measure("smoothing", times,
           [&](const std::stop_token&) { load_scene(scene_text(R"(, "crease_degrees": 30)"), source); });
 }
 
 void measure_structures(int times) {
-  const OneMesh source(sheet(500));
+  const OneModel source(model_of(sheet(500)));
   const auto scene = load_scene(scene_text(""), source);
   for (const AcceleratorType& type : accelerator_types())
     measure(std::string("structure ") + type.name, times, [&](const std::stop_token& stop) {
@@ -186,7 +177,7 @@ void measure_structures(int times) {
 }
 
 void measure_rendering(int times) {
-  const OneMesh source(sheet(30));
+  const OneModel source(model_of(sheet(30)));
   const PreparedScene scene(load_scene(scene_text(""), source));
   ThreadExecutor executor;
   const SettledPlan plan = settle(scene, make_plan(scene.scene(), {}));

@@ -1,0 +1,204 @@
+#include "core/meshes/gltf_materials.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/base/shorten.h"
+#include "core/base/task_scope.h"
+#include "core/meshes/formats.h"
+#include "core/meshes/text.h"
+
+// glTF 2.0 (Khronos, ISO/IEC 12113:2022): section 3.8 (texture data) and section 3.9 (materials). Extensions:
+// KHR_texture_transform, KHR_materials_emissive_strength, KHR_materials_unlit.
+namespace orrery {
+namespace {
+
+constexpr std::string_view kExtensions[] = {"KHR_texture_transform", "KHR_materials_emissive_strength",
+                                            "KHR_materials_unlit"};
+constexpr std::size_t kMaxNotes = 20;  // notes about images
+constexpr double kMaxEmission = 1e6;   // factor of emission; larger ones are reduced
+
+double number_or(const GltfValue& object, const char* key, double fallback, double least, double most) {
+  const auto value = object.find(key);
+  if (!value) return fallback;
+  const double number = value->number();
+  if (!(number >= least && number <= most))
+    value->fail("must be from " + text_of(least) + " to " + text_of(most) + " (got " + text_of(number) + ")");
+  return number;
+}
+
+// Reads the first three numbers of a list, each from 0 to 1.
+Vec3d color_or(const GltfValue& object, const char* key, const Vec3d& fallback) {
+  const auto list = object.find(key);
+  if (!list) return fallback;
+  const auto channel = [&](std::size_t i) {
+    const double number = list->item(i).number();
+    if (!(number >= 0 && number <= 1))
+      list->item(i).fail("must be from 0 to 1 (got " + text_of(number) + ")");
+    return number;
+  };
+  return {channel(0), channel(1), channel(2)};
+}
+
+std::optional<GltfValue> extension_of(const GltfValue& object, const char* name) {
+  const auto extensions = object.find("extensions");
+  return extensions ? extensions->find(name) : std::nullopt;
+}
+
+class MaterialReader {
+ public:
+  explicit MaterialReader(GltfFile& file) : file_(file) {}
+
+  GltfMaterials read() {
+    const auto materials = file_.root().find("materials");
+    for (std::size_t i = 0; materials && i < materials->size(); ++i) {
+      checkpoint();
+      uv_set_.reset();
+      read_material(materials->item(i));
+      found_.uv_sets.push_back(uv_set_.value_or(0));
+    }
+    if (bad_images_ > kMaxNotes) note(grouped(bad_images_ - kMaxNotes) + " more images are missing");
+    const auto report = [&](std::size_t count, const char* what) {
+      if (count > 0) note(grouped(count) + what);
+    };
+    report(mixed_sets_, " materials use two sets of texture coordinates, of which one is modelled");
+    report(rotated_, " rotated textures are not turned");
+    report(mixed_wraps_, " textures wrap differently along u and v, and are wrapped as along u");
+    return std::move(found_);
+  }
+
+ private:
+  void note(std::string text) { found_.notes.push_back(std::move(text)); }
+
+  void read_material(const GltfValue& json) {
+    ModelMaterial& material = found_.materials.emplace_back();
+    if (const auto name = json.find("name")) material.name = name->text();
+    material.metallic.factor = 1;
+    if (const auto pbr = json.find("pbrMetallicRoughness")) read_pbr(*pbr, material);
+    material.emission.factor = color_or(json, "emissiveFactor", Vec3d(0));
+    if (const auto strength = extension_of(json, "KHR_materials_emissive_strength"))
+      material.emission.factor =
+          material.emission.factor * number_or(*strength, "emissiveStrength", 1, 0, kMaxEmission);
+    if (!(material.emission.factor == Vec3d(0)))
+      material.emission.texture = read_texture(json, "emissiveTexture");
+    if (const auto texture = read_texture(json, "normalTexture"))
+      material.normal = {number_or(json.at("normalTexture"), "scale", 1, -kMaxScale, kMaxScale), texture};
+    if (const auto mode = json.find("alphaMode")) material.alpha = alpha_of(*mode);
+    material.cutoff = number_or(json, "alphaCutoff", 0.5, 0, std::numeric_limits<double>::max());
+    material.unlit = extension_of(json, "KHR_materials_unlit").has_value();
+  }
+
+  void read_pbr(const GltfValue& pbr, ModelMaterial& material) {
+    material.base_color.factor = color_or(pbr, "baseColorFactor", Vec3d(1));
+    if (const auto factor = pbr.find("baseColorFactor"); factor && factor->size() > 3) {
+      const double opacity = factor->item(3).number();
+      if (!(opacity >= 0 && opacity <= 1))
+        factor->item(3).fail("must be from 0 to 1 (got " + text_of(opacity) + ")");
+      material.opacity = opacity;
+    }
+    material.base_color.texture = read_texture(pbr, "baseColorTexture");
+    material.metallic.factor = number_or(pbr, "metallicFactor", 1, 0, 1);
+    material.roughness.factor = number_or(pbr, "roughnessFactor", 1, 0, 1);
+    material.metallic.texture = material.roughness.texture = read_texture(pbr, "metallicRoughnessTexture");
+  }
+
+  static ModelMaterial::Alpha alpha_of(const GltfValue& mode) {
+    if (mode.text() == "OPAQUE") return ModelMaterial::Alpha::opaque;
+    if (mode.text() == "MASK") return ModelMaterial::Alpha::mask;
+    if (mode.text() == "BLEND") return ModelMaterial::Alpha::blend;
+    mode.fail("must be OPAQUE, MASK or BLEND (got " + excerpt(mode.text()) + ")");
+  }
+
+  // Reads a texture of a material. Returns nullopt if there is none or its image is missing.
+  std::optional<ModelTexture> read_texture(const GltfValue& material, const char* key) {
+    const auto use = material.find(key);
+    if (!use) return std::nullopt;
+    const GltfValue texture = file_.root().at("textures").item(use->at("index").integer());
+    ModelTexture found;
+    const auto webp = extension_of(texture, "EXT_texture_webp");
+    const auto source = webp ? webp->find("source") : texture.find("source");
+    const auto image = source ? find_image(*source) : std::nullopt;
+    if (!image) return std::nullopt;
+    found.image = *image;
+    if (const auto sampler = texture.find("sampler"))
+      found.wrap = read_wrap(file_.root().at("samplers").item(sampler->integer()));
+    std::uint64_t set = integer_or(*use, "texCoord", 0);
+    if (const auto transform = extension_of(*use, "KHR_texture_transform")) {
+      set = integer_or(*transform, "texCoord", set);
+      read_transform(*transform, found);
+    }
+    if (set > kMaxSet) use->fail("texCoord must be from 0 to 7 (got " + std::to_string(set) + ")");
+    if (uv_set_ && *uv_set_ != static_cast<int>(set)) ++mixed_sets_;
+    if (!uv_set_) uv_set_ = static_cast<int>(set);
+    return found;
+  }
+
+  // Returns the index of an image in found_.images.
+  std::optional<int> find_image(const GltfValue& source) {
+    const std::uint64_t index = source.integer();
+    if (const auto known = images_.find(index); known != images_.end()) return known->second;
+    const GltfValue image = file_.root().at("images").item(index);
+    try {
+      std::string name = "image " + std::to_string(index);
+      if (const auto uri = image.find("uri"); uri && !uri->text().starts_with("data:"))
+        name = shortened(uri->text(), 80);
+      auto bytes = std::make_shared<const std::string>(file_.image_bytes(image));
+      found_.images.push_back({std::move(name), std::move(bytes)});
+      return images_[index] = static_cast<int>(found_.images.size()) - 1;
+    } catch (const InputError& error) {
+      if (++bad_images_ <= kMaxNotes) note("an image is missing: " + error.problems().front().detail);
+      return images_[index] = std::nullopt;
+    }
+  }
+
+  ModelTexture::Wrap read_wrap(const GltfValue& sampler) {
+    const std::uint64_t u = integer_or(sampler, "wrapS", kRepeat), v = integer_or(sampler, "wrapT", kRepeat);
+    if (u != v) ++mixed_wraps_;
+    switch (u) {
+      case kRepeat: return ModelTexture::Wrap::repeat;
+      case 33648: return ModelTexture::Wrap::mirror;
+      case 33071: return ModelTexture::Wrap::clamp;
+      default: sampler.fail("wrapS must be 10497, 33071 or 33648 (got " + std::to_string(u) + ")");
+    }
+  }
+
+  // The transform of glTF applies to (u, 1 - v).
+  void read_transform(const GltfValue& transform, ModelTexture& texture) {
+    const auto pair = [&](const char* key, double fallback) {
+      std::array<double, 2> numbers{fallback, fallback};
+      const auto list = transform.find(key);
+      for (std::size_t i = 0; list && i < numbers.size(); ++i) {
+        numbers[i] = list->item(i).number();
+        if (!(std::abs(numbers[i]) <= kMaxScale))
+          list->item(i).fail("must be at most " + text_of(kMaxScale) + " in magnitude (got " +
+                             text_of(numbers[i]) + ")");
+      }
+      return numbers;
+    };
+    const auto [left, top] = pair("offset", 0);
+    const auto [across, down] = pair("scale", 1);
+    if (const auto turn = transform.find("rotation"); turn && turn->number() != 0) ++rotated_;
+    texture.repeat = {across, down};
+    texture.shift = {left, 1 - down - top};
+  }
+
+  static constexpr std::uint64_t kRepeat = 10497, kMaxSet = 7;
+  static constexpr double kMaxScale = 1e5;
+
+  GltfFile& file_;
+  GltfMaterials found_;
+  std::map<std::uint64_t, std::optional<int>> images_;  // by image of the file
+  std::optional<int> uv_set_;                           // set of the current material
+  std::size_t bad_images_ = 0, mixed_sets_ = 0, rotated_ = 0, mixed_wraps_ = 0;
+};
+
+}  // namespace
+
+bool is_material_extension(std::string_view name) {
+  return std::find(std::begin(kExtensions), std::end(kExtensions), name) != std::end(kExtensions);
+}
+
+GltfMaterials read_gltf_materials(GltfFile& file) { return MaterialReader(file).read(); }
+
+}  // namespace orrery

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/meshes/mesh_file.h"
+
+// Content of a model file: the mesh, and the materials and images that its parts refer to.
+namespace orrery {
+
+// Image of a model: the bytes of its file. Not decoded, and possibly invalid.
+struct ModelImage {
+  std::string name;  // name in the file, for messages
+  std::shared_ptr<const std::string> bytes;
+};
+
+// Use of an image by a material. The image repeats beyond [0, 1], unless `wrap` says otherwise. The image is
+// looked up at (repeat * uv + shift), where (0, 0) is the lower left.
+struct ModelTexture {
+  enum class Wrap { repeat, mirror, clamp };
+
+  int image = 0;  // index into MeshModel::images
+  Wrap wrap = Wrap::repeat;
+  std::array<double, 2> repeat{1, 1}, shift{0, 0};
+
+  bool operator==(const ModelTexture&) const = default;
+};
+
+// Value of a material: `factor`, multiplied by the texture if there is one.
+template <class V>
+struct ModelValue {
+  V factor;
+  std::optional<ModelTexture> texture = std::nullopt;
+};
+
+// Material of a model, in the terms of glTF 2.0 (Khronos, section 3.9). Colours are linear. Textures of
+// `base_color` and `emission` have sRGB codes, others are linear.
+struct ModelMaterial {
+  enum class Alpha { opaque, mask, blend };
+  // Channel of the texture that stores a number.
+  enum class Channel { red, green, blue, luminance };
+
+  std::string name;
+  ModelValue<Vec3d> base_color{Vec3d(1)};
+  ModelValue<double> metallic{0}, roughness{1};
+  Channel metallic_channel = Channel::blue, roughness_channel = Channel::green;
+  ModelValue<Vec3d> emission{Vec3d(0)};
+  // `factor` multiplies the tangential part of the normal.
+  std::optional<ModelValue<double>> normal;
+  Alpha alpha = Alpha::opaque;
+  double opacity = 1;   // factor of the alpha of the texture of `base_color`
+  double cutoff = 0.5;  // Alpha::mask: surfaces with a lower alpha are not there
+  bool unlit = false;
+};
+
+// Throws the exceptions of read_model(). Immutable once read.
+struct MeshModel {
+  TriangleMesh mesh;
+  std::vector<ModelMaterial> materials;
+  std::vector<ModelImage> images;
+};
+using MeshModelPtr = std::shared_ptr<const MeshModel>;
+
+// Reads a model file: see read_mesh() for the formats and the mesh. Parts of the mesh refer to `materials`.
+MeshModel read_model(std::string_view bytes, const MeshLimits& limits = {}, const ReadNearby& nearby = {});
+
+// Returns a model of a mesh without materials.
+inline MeshModelPtr model_of(TriangleMesh mesh) {
+  return std::make_shared<const MeshModel>(MeshModel{std::move(mesh), {}, {}});
+}
+
+// Returns the numbers of the materials of the parts in ascending order, without repetitions. The number -1
+// stands for parts without a material.
+std::vector<int> materials_in_use(const TriangleMesh& mesh);
+
+// Returns the triangles with a material number, and the vertices that they use. Keeps normals, uvs and
+// colours if every such part has them.
+TriangleMesh part_of(const TriangleMesh& mesh, int material);
+
+// Returns the mesh as one part. Keeps normals, uvs and colours if every part has them.
+TriangleMesh whole_of(TriangleMesh mesh);
+
+}  // namespace orrery
