@@ -122,6 +122,22 @@ class InstanceKernelOf : public ShapeKernel<T> {
     });
   }
 
+  // Colours of 1 mark lanes without vertex colours.
+  void colors(const RayBatch<T>& rays, const HitBatch<T>& hits, const LaneGroups& groups,
+              SurfaceBatch<T>& out) const override {
+    const std::unique_ptr<ModelVisit<T>> visit(new ModelVisit<T>);
+    const std::unique_ptr<SurfaceBatch<T>> found(new SurfaceBatch<T>);
+    visit->rays.count = rays.count;
+    for_each_hit(hits, groups, [&](int i, const auto& mask, const Instance& placed, const auto& in_model) {
+      enter(placed, rays, i, hits.t.at(i), *visit);
+      visit->hits.primitive.put(i, in_model);
+      found->color.put(i, Vec3<N>(N(T(1))));
+      for (const auto& shapes : placed.model->shapes)
+        shapes->colors(visit->rays, visit->hits, LaneGroups::single(i), *found);
+      out.color.put(i, mask, found->color.at(i));
+    });
+  }
+
   void parameters(const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits,
                   SurfaceBatch<T>& out) const override {
     const std::unique_ptr<ModelVisit<T>> visit(new ModelVisit<T>);

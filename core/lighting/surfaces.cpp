@@ -77,6 +77,10 @@ void add_fields(const Geometry<T>& geometry, const SurfaceFields& fields, const 
   if (fields.travelled)
     for (const int i : met) surface.travelled.put(i, hits.t.at(i));
   if (fields.smooth) find_smooth(geometry, paths, met, hits, surface);
+  if (fields.color) {
+    for (const int i : met) surface.color.put(i, Vec3<Lanes<T>>(Lanes<T>(T(1))));
+    for (const auto& shapes : geometry.shapes) shapes->colors(paths.rays, hits, met, surface);
+  }
   if (geometry.textures) geometry.textures->apply(geometry, paths, met, hits, surface);
 }
 

@@ -17,7 +17,8 @@ template <class N>
 struct MappingOf {
   TextureMapping::Kind kind;
   Vec3<N> origin, x, y, z;
-  N repeat_u, repeat_v, shift_u, shift_v;
+  N u_of_u, u_of_v, v_of_u, v_of_v;  // matrix of `repeat` and the turn
+  N shift_u, shift_v;
 
   explicit MappingOf(const TextureMapping& m)
       : kind(m.kind),
@@ -25,8 +26,10 @@ struct MappingOf {
         x(Vec3<ScalarOf<N>>(m.x)),
         y(Vec3<ScalarOf<N>>(m.y)),
         z(Vec3<ScalarOf<N>>(m.z)),
-        repeat_u(static_cast<ScalarOf<N>>(m.repeat[0])),
-        repeat_v(static_cast<ScalarOf<N>>(m.repeat[1])),
+        u_of_u(static_cast<ScalarOf<N>>(m.cosine * m.repeat[0])),
+        u_of_v(static_cast<ScalarOf<N>>(-m.sine * m.repeat[1])),
+        v_of_u(static_cast<ScalarOf<N>>(m.sine * m.repeat[0])),
+        v_of_v(static_cast<ScalarOf<N>>(m.cosine * m.repeat[1])),
         shift_u(static_cast<ScalarOf<N>>(m.shift[0])),
         shift_v(static_cast<ScalarOf<N>>(m.shift[1])) {}
 
@@ -49,9 +52,11 @@ struct MappingOf {
     return {q, a, b};
   }
 
-  // Applies `repeat` and `shift`.
+  // Applies `repeat`, the turn and `shift`.
   TextureCoordinates<N> repeated(const TextureCoordinates<N>& c) const {
-    const auto scaled = [this](const Vec3<N>& v) { return Vec3<N>(v.x * repeat_u, v.y * repeat_v, v.z); };
+    const auto scaled = [this](const Vec3<N>& v) {
+      return Vec3<N>(v.x * u_of_u + v.y * u_of_v, v.x * v_of_u + v.y * v_of_v, v.z);
+    };
     const Vec3<N> at = scaled(c.at);
     return {{at.x + shift_u, at.y + shift_v, at.z}, scaled(c.along_first), scaled(c.along_second)};
   }

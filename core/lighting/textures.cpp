@@ -13,6 +13,8 @@ bool follows_instances(const Scene& scene, const PlacedTexture& texture) {
          !scene.instances.empty();
 }
 
+bool tilts(const TextureUse& use) { return use.slot == kBumpSlot || use.slot == kNormalSlot; }
+
 Vec3d channel_weights(TextureChannel channel) {
   switch (channel) {
     case TextureChannel::rgb: return Vec3d(0);
@@ -37,10 +39,12 @@ N smaller(const N& a, const N& b) {
 SurfaceFields texture_fields(const Scene& scene) {
   SurfaceFields fields;
   for (const TextureUse& use : scene.texture_uses) {
+    if (use.slot == kOpacitySlot) continue;
     const PlacedTexture& texture = scene.textures[static_cast<std::size_t>(use.texture)];
     fields.parameters |= texture.mapping.kind == TextureMapping::Kind::uv;
-    fields.footprint |= texture.filtered || use.slot == kBumpSlot;
+    fields.footprint |= texture.filtered || tilts(use);
     fields.identity |= follows_instances(scene, texture);
+    fields.color |= texture.vertex_colors;
   }
   return fields;
 }
@@ -75,6 +79,7 @@ TextureStage<T>::TextureStage(const Scene& scene, const Exposure& exposure) : ex
   std::vector<int> entry_of(scene.textures.size(), -1);
   bool follows = false;
   for (const TextureUse& use : scene.texture_uses) {
+    if (use.slot == kOpacitySlot) continue;  // evaluated by CutoutAccelerator
     const PlacedTexture& texture = scene.textures[static_cast<std::size_t>(use.texture)];
     int& number = entry_of[static_cast<std::size_t>(use.texture)];
     if (number < 0) {
@@ -82,6 +87,7 @@ TextureStage<T>::TextureStage(const Scene& scene, const Exposure& exposure) : ex
       entries_.push_back({texture.texture->kernel(T()),
                           texture.mapping,
                           texture.filtered,
+                          texture.vertex_colors,
                           false,
                           static_cast<T>(texture.texture->detail()),
                           {},
@@ -91,19 +97,19 @@ TextureStage<T>::TextureStage(const Scene& scene, const Exposure& exposure) : ex
     Entry& entry = entries_[static_cast<std::size_t>(number)];
     const auto material = static_cast<std::size_t>(use.material);
     entry.used_by[material] = 1;
-    entry.bumps = entry.bumps || use.slot == kBumpSlot;
+    entry.tilts = entry.tilts || tilts(use);
     auto pass = std::find_if(entry.passes.begin(), entry.passes.end(),
                              [&](const Pass& p) { return p.slot == use.slot; });
     if (pass == entry.passes.end())
       pass = entry.passes.insert(pass, {use.slot, std::vector<Binding<T>>(materials)});
     pass->by_material[material] = {T(1),
-                                   static_cast<T>(use.offset),
                                    Vec3<T>(use.scale),
+                                   Vec3<T>(use.offset),
                                    Vec3<T>(channel_weights(use.channel)),
                                    use.channel == TextureChannel::rgb ? T(1) : T(0),
                                    Vec3<T>(use.least),
                                    Vec3<T>(use.most)};
-    if (use.slot != kBumpSlot) slots_ = std::max(slots_, static_cast<std::size_t>(use.slot) + 1);
+    if (use.slot >= 0) slots_ = std::max(slots_, static_cast<std::size_t>(use.slot) + 1);
   }
   if (!follows) return;
   for (const Instance& instance : scene.instances) {
@@ -118,18 +124,22 @@ void TextureStage<T>::apply(const Geometry<T>& geometry, const PathBatch<T>& pat
                             const HitBatch<T>& hits, SurfaceBatch<T>& surface) const {
   if (surface.textured.size() < slots_) surface.textured.resize(slots_);
   std::unique_ptr<Scratch> scratch;
-  const auto evaluate = [&](bool bumps) {
+  const auto evaluate = [&](bool tilting) {
     for (const Entry& entry : entries_) {
-      if (bumps && !entry.bumps) continue;
+      if (tilting && !entry.tilts) continue;
       Batch batch{geometry, paths, hits, surface, groups_of(entry, surface, met)};
       if (batch.groups.empty()) continue;
       if (!scratch) scratch.reset(new Scratch);
       find_coordinates(entry, batch, *scratch);
-      if (!bumps) entry.kernel->evaluate(scratch->points, batch.groups, scratch->value);
+      entry.kernel->evaluate(scratch->points, batch.groups, scratch->value);
+      if (entry.colored) multiply_colors(batch, scratch->value);
       for (const Pass& pass : entry.passes) {
-        if (bumps && pass.slot == kBumpSlot) bump(entry, pass, batch, *scratch);
-        if (!bumps && pass.slot != kBumpSlot) bind(pass, batch, scratch->value);
+        if (tilting && pass.slot == kNormalSlot) turn_normals(pass, batch, *scratch);
+        if (!tilting && (pass.slot >= 0 || pass.slot == kEmissionSlot)) bind(pass, batch, scratch->value);
       }
+      if (!tilting) continue;
+      for (const Pass& pass : entry.passes)
+        if (pass.slot == kBumpSlot) bump(entry, pass, batch, *scratch);  // replaces the values
     }
   };
   evaluate(false);
@@ -169,7 +179,7 @@ Affine<Lanes<T>> TextureStage<T>::model_from_world(const Batch& batch, int i) co
 template <class T>
 void TextureStage<T>::find_coordinates(const Entry& entry, const Batch& batch, Scratch& scratch) const {
   const bool is_uv = entry.mapping.kind == TextureMapping::Kind::uv;
-  const bool differentiates = entry.filtered || entry.bumps;
+  const bool differentiates = entry.filtered || entry.tilts;
   const bool follows = !poses_.empty() && !entry.mapping.in_world;
   const MappingOf<N> mapping(entry.mapping);
   if (is_uv && differentiates) find_uv(batch, scratch);
@@ -198,7 +208,7 @@ void TextureStage<T>::find_coordinates(const Entry& entry, const Batch& batch, S
         i, entry.filtered ? box_of_footprint(found, tangents.first, tangents.second, normal,
                                              batch.paths.rays.direction.at(i), surface.footprint.at(i))
                           : Vec3<N>(zero));
-    if (!entry.bumps) continue;
+    if (!entry.tilts) continue;
     scratch.first.put(i, found.along_first);
     scratch.second.put(i, found.along_second);
   }
@@ -259,7 +269,7 @@ Vec3<Lanes<T>> TextureStage<T>::bound_value(const Pass& pass, const SurfaceBatch
       pass.by_material, material, known, material[static_cast<std::size_t>(stdx::find_first_set(known))]);
   mine = known && binding.used > N(T(0));
   const Vec3<N> chosen = select(binding.rgb > N(T(0)), value, Vec3<N>(N(dot(binding.weights, value))));
-  const Vec3<N> scaled = chosen * binding.scale + Vec3<N>(binding.offset);
+  const Vec3<N> scaled = chosen * binding.scale + binding.offset;
   const auto within = [](const N& x, const N& least, const N& most) {
     return min_first(most, max_first(least, x));
   };
@@ -270,11 +280,51 @@ Vec3<Lanes<T>> TextureStage<T>::bound_value(const Pass& pass, const SurfaceBatch
 
 template <class T>
 void TextureStage<T>::bind(const Pass& pass, const Batch& batch, const Vec3Array<T>& values) const {
-  Vec3Array<T>& slot = batch.surface.textured[static_cast<std::size_t>(pass.slot)];
+  Vec3Array<T>& slot = pass.slot == kEmissionSlot
+                           ? batch.surface.emitted
+                           : batch.surface.textured[static_cast<std::size_t>(pass.slot)];
   for (const int i : batch.groups) {
     MaskOf<N> mine;
     const Vec3<N> value = bound_value(pass, batch.surface, i, values.at(i), mine);
     slot.put(i, mine, value);
+  }
+}
+
+template <class T>
+void TextureStage<T>::multiply_colors(const Batch& batch, Vec3Array<T>& values) const {
+  for (const int i : batch.groups) values.put(i, values.at(i) * batch.surface.color.at(i));
+}
+
+// The colour c of a normal map is the normal 2 c - 1 in the coordinates of the surface: x along increasing u,
+// y along increasing v, z along the shading normal (glTF 2.0, Khronos, section 3.9.3). With the derivatives
+// of u and v along the tangents a and b, the direction of increasing u at constant v is a v_b - b v_a, up to
+// the sign of the determinant.
+template <class T>
+void TextureStage<T>::turn_normals(const Pass& pass, const Batch& batch, const Scratch& scratch) const {
+  const SurfaceBatch<T>& surface = batch.surface;
+  const N zero(T(0)), one(T(1));
+  for (const int i : batch.groups) {
+    MaskOf<N> mine;
+    const Vec3<N> color = bound_value(pass, surface, i, scratch.value.at(i), mine);
+    const Vec3<N> a = scratch.first.at(i), b = scratch.second.at(i);
+    const N determinant = a.x * b.y - b.x * a.y, side = surface.side.at(i);
+    const Tangents<N> tangents = tangents_of(surface.geometric.at(i));
+    const Vec3<N> normal = surface.normal.at(i) * side;
+    const N sign = select(determinant < zero, N(-one), one);
+    const Vec3<N> along_u = (tangents.first * b.y - tangents.second * a.y) * sign,
+                  along_v = (tangents.second * a.x - tangents.first * b.x) * sign;
+    const Vec3<N> flat = along_u - normal * dot(normal, along_u);
+    const N size = dot(flat, flat);
+    const auto usable = mine && size > zero && determinant != zero;
+    if (!any(usable)) continue;
+    using std::sqrt;
+    const Vec3<N> x = flat * (one / sqrt(select(usable, size, one)));
+    const Vec3<N> across = cross(normal, x);
+    const Vec3<N> y = across * select(dot(across, along_v) < zero, N(-one), one);
+    const Vec3<N> found = x * color.x + y * color.y + normal * color.z;
+    const N square = dot(found, found);
+    const auto turned = usable && square > zero;
+    batch.surface.normal.put(i, turned, found * (side / sqrt(select(turned, square, one))));
   }
 }
 

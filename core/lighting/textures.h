@@ -11,8 +11,8 @@
 
 namespace orrery {
 
-// Evaluates the textures of a scene: sets SurfaceBatch::textured, and tilts shading normals by bump maps.
-// Immutable and thread-safe.
+// Evaluates the textures of a scene: sets SurfaceBatch::textured and `emitted`, and tilts shading normals by
+// bump maps and normal maps. Immutable and thread-safe.
 template <class T>
 class TextureStage {
  public:
@@ -20,7 +20,7 @@ class TextureStage {
   TextureStage(const Scene& scene, const Exposure& exposure);
 
   // Evaluates the textures of every surface in `met`. REQUIRES: the fields texture_fields() are set. Changes
-  // only `textured` and `normal` of `surface`.
+  // only `textured`, `emitted` and `normal` of `surface`.
   void apply(const Geometry<T>& geometry, const PathBatch<T>& paths, const LaneGroups& met,
              const HitBatch<T>& hits, SurfaceBatch<T>& surface) const;
 
@@ -31,8 +31,8 @@ class TextureStage {
   // TextureUse in lanes, by material. `used` is 0 for materials that do not use the texture in this slot.
   template <class M>
   struct Binding {
-    M used, offset;
-    Vec3<M> scale;
+    M used;
+    Vec3<M> scale, offset;
     Vec3<M> weights;  // weights of the channels, if the value is grey
     M rgb;            // 1: the value is the colour
     Vec3<M> least, most;
@@ -45,7 +45,7 @@ class TextureStage {
   struct Entry {
     TextureKernelPtr<T> kernel;
     TextureMapping mapping;
-    bool filtered, bumps = false;
+    bool filtered, colored, tilts = false;
     T detail;
     std::vector<Pass> passes;
     std::vector<char> used_by;  // by material
@@ -61,7 +61,9 @@ class TextureStage {
   void find_uv(const Batch& batch, Scratch& scratch) const;
   Affine<N> model_from_world(const Batch& batch, int i) const;
   void bind(const Pass& pass, const Batch& batch, const Vec3Array<T>& values) const;
+  void multiply_colors(const Batch& batch, Vec3Array<T>& values) const;
   void bump(const Entry& entry, const Pass& pass, const Batch& batch, Scratch& scratch) const;
+  void turn_normals(const Pass& pass, const Batch& batch, const Scratch& scratch) const;
   Vec3<N> bound_value(const Pass& pass, const SurfaceBatch<T>& surface, int i, const Vec3<N>& value,
                       MaskOf<N>& mine) const;
 

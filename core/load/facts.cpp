@@ -133,6 +133,7 @@ void add_materials(const Scene& scene, std::span<const std::int32_t> first_user,
       if (first + i >= first_user.size() || first_user[first + i] < 0) continue;
       used = true;
       facts.materials.emits |= scene.emission[first + i] != Vec3d(0);
+      facts.cutouts |= scene.cutouts[first + i].lets_rays_pass();
       const auto user = [&] { return pointer_to_object(scene, first_user[first + i]); };
       const double most = set->max_albedo(static_cast<int>(i));
       if (most > facts.max_albedo.value) facts.max_albedo = {most, user()};

@@ -14,8 +14,8 @@
 #include "core/lights/registry.h"
 #include "core/load/facts.h"
 #include "core/load/media.h"
-#include "core/materials/material_params.h"
 #include "core/materials/registry.h"
+#include "core/materials/surface_params.h"
 #include "core/params/motion.h"
 #include "core/plan/limits.h"
 #include "core/plan/options.h"
@@ -248,9 +248,9 @@ class SceneReader {
   struct MaterialPlace {
     std::size_t set;
     int index;  // within the set
-    Vec3d emission;
     std::string name;
-    std::vector<TextureUse> uses;  // without material numbers
+    SurfaceParams surface;
+    std::vector<TextureUse> uses;  // of the parameters of the type, without material numbers
   };
 
   void read_texture(const std::string& name, Params& p) {
@@ -264,23 +264,39 @@ class SceneReader {
     placed.type = texture_types()[*type].name;
     placed.texture = texture_types()[*type].read(p, assets_);
     placed.mapping = read_mapping(p);
+    placed.vertex_colors =
+        p.flag("vertex_colors", "Multiply the texture by the vertex colours of meshes.", false);
     placed.filtered = p.choice("filter", "Average over the pixel, or the value at the centre of the pixel.",
                                {"pixel", "none"}, "pixel") == "pixel";
-    if (placed.texture) texture_names_.bounds.back() = placed.texture->bounds();
+    if (!placed.texture) return;
+    TextureBounds& bounds = texture_names_.bounds.back() = placed.texture->bounds();
+    if (!placed.vertex_colors) return;  // colours are from 0 to 1
+    const auto with_0 = [](const Vec3d& v, auto of) {
+      return Vec3d(of(v.x, 0.0), of(v.y, 0.0), of(v.z, 0.0));
+    };
+    bounds.least = with_0(bounds.least, [](double a, double b) { return std::min(a, b); });
+    bounds.most = with_0(bounds.most, [](double a, double b) { return std::max(a, b); });
   }
 
   void read_material(const std::string& name, Params& p) {
     const auto type = p.pick("type", "Material type.", choices_of(material_types()));
     names_.add(name);
-    if (!type) return places_.push_back({0, 0, {}, name, {}});
+    if (!type) return places_.push_back({0, 0, name, {}, {}});
     MaterialSet& set = *scene_->materials[*type];
     const int index = set.size();
     set.add(p, texture_names_);
-    const Vec3d emission =
-        p.color("emission", "Radiance that surfaces emit on both sides, per channel.", Vec3d(0));
-    std::vector<TextureUse> uses = set.texture_uses(index);
-    read_bump(p, texture_names_, uses);
-    places_.push_back({*type, index, emission, name, std::move(uses)});
+    SurfaceParams surface = read_surface_params(p, texture_names_);
+    for (const TextureUse& use : surface.uses)
+      if (use.slot == kOpacitySlot && !is_plain_uv(use.texture))
+        p.fail("opacity", "texture must have the mapping uv and no vertex colours");
+    places_.push_back({*type, index, name, std::move(surface), set.texture_uses(index)});
+  }
+
+  // Returns whether a texture depends on u and v only. True for unknown textures.
+  bool is_plain_uv(int texture) const {
+    if (static_cast<std::size_t>(texture) >= scene_->textures.size()) return true;
+    const PlacedTexture& placed = scene_->textures[static_cast<std::size_t>(texture)];
+    return placed.mapping.kind == TextureMapping::Kind::uv && !placed.vertex_colors;
   }
 
   void read_environment(Params& p) {
@@ -324,14 +340,17 @@ class SceneReader {
       first[set] = first[set - 1] + scene_->materials[set - 1]->size();
     scene_->emission.resize(static_cast<std::size_t>(first.back() + scene_->materials.back()->size()));
     scene_->material_names.resize(scene_->emission.size());
-    for (const auto& [set, index, emission, name, uses] : places_) {
-      const int material = first[set] + index;
-      scene_->emission[static_cast<std::size_t>(material)] = emission;
-      scene_->material_names[static_cast<std::size_t>(material)] = name;
-      for (TextureUse use : uses) {
-        use.material = material;
-        scene_->texture_uses.push_back(use);
-      }
+    scene_->cutouts.resize(scene_->emission.size());
+    for (const auto& [set, index, name, surface, uses] : places_) {
+      const auto material = static_cast<std::size_t>(first[set] + index);
+      scene_->emission[material] = surface.emission;
+      scene_->material_names[material] = name;
+      scene_->cutouts[material] = {surface.opacity, surface.alpha_cutoff};
+      for (const auto* const list : {&uses, &surface.uses})
+        for (TextureUse use : *list) {
+          use.material = static_cast<int>(material);
+          scene_->texture_uses.push_back(use);
+        }
     }
     std::stable_sort(scene_->texture_uses.begin(), scene_->texture_uses.end(),
                      [](const TextureUse& a, const TextureUse& b) { return a.material < b.material; });

@@ -41,28 +41,15 @@ TextureUse read_texture_use(Params& p, const TextureNames& textures, bool is_col
       static_cast<TextureChannel>(std::find(kChannels.begin(), kChannels.end(), channel) - kChannels.begin());
   use.scale = Vec3d(p.number("scale", "Factor of the value.", kFactors, 1.0));
   if (is_color) use.scale = use.scale * p.color("tint", "Colour that multiplies the value.", Vec3d(1));
-  use.offset = p.number("offset", "Number that is added to the scaled value.", kFactors, 0.0);
+  use.offset = Vec3d(p.number("offset", "Number that is added to the scaled value.", kFactors, 0.0));
   if (!is_color && use.channel == TextureChannel::rgb)
     p.fail("channel", "must be luminance, red, green or blue for a number (got \"rgb\")");
   if (texture >= textures.bounds.size()) return use;
   const TextureBounds own = bounds_of_channel(textures.bounds[texture], use.channel);
-  const Vec3d a = own.least * use.scale + Vec3d(use.offset), b = own.most * use.scale + Vec3d(use.offset);
+  const Vec3d a = own.least * use.scale + use.offset, b = own.most * use.scale + use.offset;
   use.least = {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
   use.most = largest(a, b);
   return use;
-}
-
-void read_bump(Params& p, const TextureNames& textures, std::vector<TextureUse>& uses) {
-  p.object_if_given(
-      "bump", "Height of the surface, which tilts the shading normal. It moves no point.", [&](Params& bump) {
-        TextureUse use;
-        use.texture = static_cast<int>(bump.reference("texture", "Name of the texture.", textures.names));
-        use.slot = kBumpSlot;
-        use.channel = TextureChannel::luminance;
-        use.scale = Vec3d(bump.number("scale", "Height in metres where the luminance is 1.",
-                                      {.min = -kMaxLength, .max = kMaxLength}));
-        uses.push_back(use);
-      });
 }
 
 int MaterialParams::add_field(const double& first, std::size_t count) {
@@ -154,7 +141,7 @@ void MaterialParams::coefficient_like(Vec3d& into, std::string_view key, std::st
   const Vec3d a = use.least * scale + Vec3d(offset), b = use.most * scale + Vec3d(offset);
   use.least = {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
   use.most = largest(a, b);
-  use.offset = use.offset * scale + offset;
+  use.offset = use.offset * scale + Vec3d(offset);
   use.scale = use.scale * scale;
   into = use.least;
   uses_.push_back(use);

@@ -63,11 +63,8 @@ class MaterialParams {
   std::vector<TextureUse> uses_;
 };
 
-// Reads the reference to a texture in `p`: name, channel, scale and offset. `scale_doc` describes the scale.
-// Sets `least` and `most` to the bounds of the value.
+// Reads the reference to a texture in `p`: name, channel, scale, tint and offset. Sets `least` and `most` to
+// the bounds of the value.
 TextureUse read_texture_use(Params& p, const TextureNames& textures, bool is_color);
-
-// Reads the bump map of a material at `key` "bump", if there is one, and adds its use.
-void read_bump(Params& p, const TextureNames& textures, std::vector<TextureUse>& uses);
 
 }  // namespace orrery

@@ -118,21 +118,18 @@ struct MetallicRoughness {
 // Parameters of a MetallicRoughness material, and the albedos of its facets.
 template <class N>
 struct MetallicRoughnessInputs {
-  Vec3<N> base_color;
+  Vec3<N> base_color, normal_reflectance;
   N metallic, strict, roughness;
   N alpha;
   GgxAlbedo<N> albedo;
   FacetAlbedo<N> grazing;
 
-  static constexpr double kDielectric = 0.04;  // reflectance of dielectrics along the normal
-
   void read(MaterialParams& p);
   void tabulate(double roughness);
   MetallicRoughness<N> record() const {
     const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1));
-    const N dielectric(static_cast<ScalarOf<N>>(kDielectric));
     const auto is_strict = strict > zero;
-    MetallicRoughness<N> found{Vec3<N>(dielectric) * (one - metallic) + base_color * metallic,
+    MetallicRoughness<N> found{normal_reflectance * (one - metallic) + base_color * metallic,
                                base_color * (one - metallic),
                                Vec3<N>(zero),
                                strict,

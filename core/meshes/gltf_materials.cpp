@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "core/base/shorten.h"
 #include "core/base/task_scope.h"
@@ -10,12 +11,14 @@
 #include "core/meshes/text.h"
 
 // glTF 2.0 (Khronos, ISO/IEC 12113:2022): section 3.8 (texture data) and section 3.9 (materials). Extensions:
-// KHR_texture_transform, KHR_materials_emissive_strength, KHR_materials_unlit.
+// KHR_texture_transform, KHR_materials_emissive_strength, KHR_materials_unlit, KHR_materials_ior,
+// KHR_materials_specular without its textures.
 namespace orrery {
 namespace {
 
 constexpr std::string_view kExtensions[] = {"KHR_texture_transform", "KHR_materials_emissive_strength",
-                                            "KHR_materials_unlit"};
+                                            "KHR_materials_unlit", "KHR_materials_ior",
+                                            "KHR_materials_specular"};
 constexpr std::size_t kMaxNotes = 20;  // notes about images
 constexpr double kMaxEmission = 1e6;   // factor of emission; larger ones are reduced
 
@@ -28,14 +31,14 @@ double number_or(const GltfValue& object, const char* key, double fallback, doub
   return number;
 }
 
-// Reads the first three numbers of a list, each from 0 to 1.
-Vec3d color_or(const GltfValue& object, const char* key, const Vec3d& fallback) {
+// Reads the first three numbers of a list, each from 0 to `most`.
+Vec3d color_or(const GltfValue& object, const char* key, const Vec3d& fallback, double most = 1) {
   const auto list = object.find(key);
   if (!list) return fallback;
   const auto channel = [&](std::size_t i) {
     const double number = list->item(i).number();
-    if (!(number >= 0 && number <= 1))
-      list->item(i).fail("must be from 0 to 1 (got " + text_of(number) + ")");
+    if (!(number >= 0 && number <= most))
+      list->item(i).fail("must be from 0 to " + text_of(most) + " (got " + text_of(number) + ")");
     return number;
   };
   return {channel(0), channel(1), channel(2)};
@@ -62,9 +65,8 @@ class MaterialReader {
     const auto report = [&](std::size_t count, const char* what) {
       if (count > 0) note(grouped(count) + what);
     };
+    report(specular_textures_, " textures of KHR_materials_specular are not modelled");
     report(mixed_sets_, " materials use two sets of texture coordinates, of which one is modelled");
-    report(rotated_, " rotated textures are not turned");
-    report(mixed_wraps_, " textures wrap differently along u and v, and are wrapped as along u");
     return std::move(found_);
   }
 
@@ -86,7 +88,26 @@ class MaterialReader {
       material.normal = {number_or(json.at("normalTexture"), "scale", 1, -kMaxScale, kMaxScale), texture};
     if (const auto mode = json.find("alphaMode")) material.alpha = alpha_of(*mode);
     material.cutoff = number_or(json, "alphaCutoff", 0.5, 0, std::numeric_limits<double>::max());
+    material.normal_reflectance = read_normal_reflectance(json);
     material.unlit = extension_of(json, "KHR_materials_unlit").has_value();
+  }
+
+  // The reflectance of a dielectric with an index n is ((n - 1) / (n + 1))^2. An index of 0 makes it 1.
+  Vec3d read_normal_reflectance(const GltfValue& json) {
+    double index = 1.5;
+    if (const auto ior = extension_of(json, "KHR_materials_ior"))
+      index = number_or(*ior, "ior", 1.5, 0, kMaxIor);
+    const double root = (index - 1) / (index + 1);
+    Vec3d reflectance(index == 1.5 ? 0.04 : root * root);
+    const auto specular = extension_of(json, "KHR_materials_specular");
+    if (!specular) return reflectance;
+    const Vec3d color = color_or(*specular, "specularColorFactor", Vec3d(1), kMaxIor);
+    const auto within = [](double x) { return std::min(x, 1.0); };
+    reflectance = reflectance * color;
+    reflectance = {within(reflectance.x), within(reflectance.y), within(reflectance.z)};
+    for (const char* key : {"specularTexture", "specularColorTexture"})
+      if (specular->find(key)) ++specular_textures_;
+    return reflectance * number_or(*specular, "specularFactor", 1, 0, 1);
   }
 
   void read_pbr(const GltfValue& pbr, ModelMaterial& material) {
@@ -121,8 +142,11 @@ class MaterialReader {
     const auto image = source ? find_image(*source) : std::nullopt;
     if (!image) return std::nullopt;
     found.image = *image;
-    if (const auto sampler = texture.find("sampler"))
-      found.wrap = read_wrap(file_.root().at("samplers").item(sampler->integer()));
+    if (const auto sampler = texture.find("sampler")) {
+      const GltfValue modes = file_.root().at("samplers").item(sampler->integer());
+      found.wrap = read_wrap(modes, "wrapS");
+      found.wrap_v = read_wrap(modes, "wrapT");
+    }
     std::uint64_t set = integer_or(*use, "texCoord", 0);
     if (const auto transform = extension_of(*use, "KHR_texture_transform")) {
       set = integer_or(*transform, "texCoord", set);
@@ -152,18 +176,19 @@ class MaterialReader {
     }
   }
 
-  ModelTexture::Wrap read_wrap(const GltfValue& sampler) {
-    const std::uint64_t u = integer_or(sampler, "wrapS", kRepeat), v = integer_or(sampler, "wrapT", kRepeat);
-    if (u != v) ++mixed_wraps_;
-    switch (u) {
+  static ModelTexture::Wrap read_wrap(const GltfValue& sampler, const char* key) {
+    const std::uint64_t mode = integer_or(sampler, key, kRepeat);
+    switch (mode) {
       case kRepeat: return ModelTexture::Wrap::repeat;
       case 33648: return ModelTexture::Wrap::mirror;
       case 33071: return ModelTexture::Wrap::clamp;
-      default: sampler.fail("wrapS must be 10497, 33071 or 33648 (got " + std::to_string(u) + ")");
+      default:
+        sampler.fail(std::string(key) + " must be 10497, 33071 or 33648 (got " + std::to_string(mode) + ")");
     }
   }
 
-  // The transform of glTF applies to (u, 1 - v).
+  // The transform of glTF applies to (u, 1 - v): (u, v) of glTF, multiplied by the scale, turned
+  // anticlockwise as seen with v downward, and increased by the offset.
   void read_transform(const GltfValue& transform, ModelTexture& texture) {
     const auto pair = [&](const char* key, double fallback) {
       std::array<double, 2> numbers{fallback, fallback};
@@ -178,19 +203,20 @@ class MaterialReader {
     };
     const auto [left, top] = pair("offset", 0);
     const auto [across, down] = pair("scale", 1);
-    if (const auto turn = transform.find("rotation"); turn && turn->number() != 0) ++rotated_;
+    const double angle = number_or(transform, "rotation", 0, -kMaxAngle, kMaxAngle);
     texture.repeat = {across, down};
-    texture.shift = {left, 1 - down - top};
+    texture.turn_degrees = std::remainder(angle / std::numbers::pi * 180, 360.0);
+    texture.shift = {left + std::sin(angle) * down, 1 - std::cos(angle) * down - top};
   }
 
   static constexpr std::uint64_t kRepeat = 10497, kMaxSet = 7;
-  static constexpr double kMaxScale = 1e5;
+  static constexpr double kMaxScale = 1e5, kMaxAngle = 1e6, kMaxIor = 1e6;
 
   GltfFile& file_;
   GltfMaterials found_;
   std::map<std::uint64_t, std::optional<int>> images_;  // by image of the file
   std::optional<int> uv_set_;                           // set of the current material
-  std::size_t bad_images_ = 0, mixed_sets_ = 0, rotated_ = 0, mixed_wraps_ = 0;
+  std::size_t bad_images_ = 0, mixed_sets_ = 0, specular_textures_ = 0;
 };
 
 }  // namespace

@@ -8,11 +8,6 @@
 namespace orrery {
 namespace {
 
-// Returns the part of a mesh without parts.
-MeshPart only_part(const TriangleMesh& mesh) {
-  return {0, -1, !mesh.normals.empty(), !mesh.uvs.empty(), !mesh.colors.empty()};
-}
-
 // Clears the attributes that not every one of the parts has.
 template <class Parts>
 void drop_partial_attributes(const Parts& parts, TriangleMesh& mesh) {
@@ -48,6 +43,10 @@ void take_vertices(const TriangleMesh& mesh, TriangleMesh& part) {
 }
 
 }  // namespace
+
+MeshPart only_part(const TriangleMesh& mesh) {
+  return {0, -1, !mesh.normals.empty(), !mesh.uvs.empty(), !mesh.colors.empty()};
+}
 
 std::vector<int> materials_in_use(const TriangleMesh& mesh) {
   if (mesh.parts.empty()) return {-1};

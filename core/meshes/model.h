@@ -17,14 +17,15 @@ struct ModelImage {
   std::shared_ptr<const std::string> bytes;
 };
 
-// Use of an image by a material. The image repeats beyond [0, 1], unless `wrap` says otherwise. The image is
-// looked up at (repeat * uv + shift), where (0, 0) is the lower left.
+// Use of an image by a material. The image is looked up at (u, v), where (0, 0) is the lower left, after the
+// coordinates are multiplied by `repeat`, turned anticlockwise by `turn_degrees`, and increased by `shift`.
 struct ModelTexture {
   enum class Wrap { repeat, mirror, clamp };
 
   int image = 0;  // index into MeshModel::images
-  Wrap wrap = Wrap::repeat;
+  Wrap wrap = Wrap::repeat, wrap_v = Wrap::repeat;
   std::array<double, 2> repeat{1, 1}, shift{0, 0};
+  double turn_degrees = 0;
 
   bool operator==(const ModelTexture&) const = default;
 };
@@ -46,6 +47,7 @@ struct ModelMaterial {
   std::string name;
   ModelValue<Vec3d> base_color{Vec3d(1)};
   ModelValue<double> metallic{0}, roughness{1};
+  Vec3d normal_reflectance{0.04};  // of the dielectric
   Channel metallic_channel = Channel::blue, roughness_channel = Channel::green;
   ModelValue<Vec3d> emission{Vec3d(0)};
   // `factor` multiplies the tangential part of the normal.
@@ -56,7 +58,6 @@ struct ModelMaterial {
   bool unlit = false;
 };
 
-// Throws the exceptions of read_model(). Immutable once read.
 struct MeshModel {
   TriangleMesh mesh;
   std::vector<ModelMaterial> materials;
@@ -71,6 +72,9 @@ MeshModel read_model(std::string_view bytes, const MeshLimits& limits = {}, cons
 inline MeshModelPtr model_of(TriangleMesh mesh) {
   return std::make_shared<const MeshModel>(MeshModel{std::move(mesh), {}, {}});
 }
+
+// Returns the only part of a mesh without parts.
+MeshPart only_part(const TriangleMesh& mesh);
 
 // Returns the numbers of the materials of the parts in ascending order, without repetitions. The number -1
 // stands for parts without a material.

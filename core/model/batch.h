@@ -156,6 +156,7 @@ struct SurfaceFields {
   bool footprint = false;   // width and spread of rays, footprint of surfaces
   bool travelled = false;   // distance of surfaces from the ray origin
   bool smooth = false;      // smooth normal and lift of surfaces
+  bool color = false;       // colour of surfaces
 
   SurfaceFields& operator|=(const SurfaceFields& other) {
     parameters |= other.parameters;
@@ -163,6 +164,7 @@ struct SurfaceFields {
     footprint |= other.footprint;
     travelled |= other.travelled;
     smooth |= other.smooth;
+    color |= other.color;
     return *this;
   }
 };
@@ -208,6 +210,7 @@ struct SurfaceBatch {
   // from `position` to the curved surface that the vertex normals imply (see ShapeKernel::smooth()), metres.
   // Other surfaces: `geometric` and 0.
   Vec3Array<T> smooth, lift;
+  Vec3Array<T> color;  // interpolated vertex colour of a mesh that has them, otherwise 1
   // Index of refraction inside the surface, divided by the index outside. Null unless Plan::media: indices of
   // materials are then relative to air, and materials apply their filters. Otherwise the technique does.
   const Array<T>* relative_index = nullptr;
@@ -216,6 +219,8 @@ struct SurfaceBatch {
   // Values of textured parameters, by slot of TextureUse. Filled only in lanes whose material has such a
   // parameter. Empty if the scene uses no textures.
   std::vector<Vec3Array<T>> textured;
+  // Emitted radiance. Filled only in lanes whose material has a texture of its emission.
+  Vec3Array<T> emitted;
 
   // Returns the origins of rays along `direction` from the surfaces in register i. The origins are offset by
   // `step` to the side on which the rays leave.

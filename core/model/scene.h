@@ -63,6 +63,7 @@ struct SceneFacts {
   Boundsd bounds;                                                    // bounded primitives only
   bool unbounded = false;                                            // some primitive is unbounded
   bool smooth = false;                                               // some mesh has vertex normals
+  bool cutouts = false;                                              // rays pass some surface: see Cutout
   RadianceRange tree_radiance, distributed_radiance, path_radiance;  // one per kind of technique
   RadianceRange sky_radiance;  // radiance of rays that miss everything, without lights at infinity
   OccupiedSpace occupied;
@@ -149,6 +150,14 @@ struct ObjectRun {
   std::int32_t first_primitive, object;
 };
 
+// Opacity of a material: see SurfaceParams.
+struct Cutout {
+  double opacity = 1;  // the smallest value, if the opacity is textured
+  std::optional<double> cutoff;
+
+  bool lets_rays_pass() const { return opacity < cutoff.value_or(1); }
+};
+
 // Scene as read, in double precision. Immutable and shared between threads. Primitives are numbered set by
 // set in the order of `shapes`, materials in the order of `materials`. Objects are numbered as in the scene
 // file: `objects` first, then `instances`.
@@ -165,6 +174,7 @@ struct Scene {
   std::vector<std::unique_ptr<ShapeSet>> shapes;
   std::vector<std::unique_ptr<MaterialSet>> materials;
   std::vector<Vec3d> emission;              // per material: radiance emitted on both sides
+  std::vector<Cutout> cutouts;              // per material
   std::vector<std::string> material_names;  // per material
   std::vector<PlacedTexture> textures;
   std::vector<TextureUse> texture_uses;  // uses by all materials, in their order

@@ -121,6 +121,10 @@ class ShapeKernel {
   // max(0, -dot(P - V, n)) n (Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021).
   virtual void smooth(const RayBatch<T>& /*rays*/, const HitBatch<T>& /*hits*/, const LaneGroups& /*groups*/,
                       SurfaceBatch<T>& /*out*/) const {}
+
+  // Fills `color` of hits on triangles with vertex colours. Other lanes are unchanged.
+  virtual void colors(const RayBatch<T>& /*rays*/, const HitBatch<T>& /*hits*/, const LaneGroups& /*groups*/,
+                      SurfaceBatch<T>& /*out*/) const {}
 };
 
 template <class T>

@@ -61,7 +61,8 @@ class Texture {
 //   spherical    (turns of q about its y axis, latitude of q from 0 at the bottom to 1 at the top, 0)
 //   cylindrical  (turns of q about its y axis, q.y, 0)
 //   solid        q
-// The first two coordinates of uv, spherical and cylindrical are then multiplied by `repeat` and increased by
+// The first two coordinates of uv, spherical and cylindrical are then multiplied by `repeat`, turned
+// anticlockwise by an angle with this cosine and sine, and increased by
 // `shift`.
 struct TextureMapping {
   enum class Kind { uv, planar, spherical, cylindrical, solid } kind = Kind::uv;
@@ -69,6 +70,7 @@ struct TextureMapping {
   Vec3d origin{0.0};
   Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};  // rows; 1 / metres for planar and solid
   std::array<double, 2> repeat{1, 1}, shift{0, 0};
+  double cosine = 1, sine = 0;
 };
 
 struct PlacedTexture {
@@ -76,24 +78,26 @@ struct PlacedTexture {
   const char* type = "";  // name of its TextureType
   std::shared_ptr<const Texture> texture;
   TextureMapping mapping;
-  bool filtered = true;  // averaged over the footprint of the pixel
+  bool filtered = true;        // averaged over the footprint of the pixel
+  bool vertex_colors = false;  // multiplied by the vertex colours of meshes
 };
 
 // Value taken from a texture: its colour, its luminance (ITU-R BT.709) or one channel.
 enum class TextureChannel { rgb, luminance, red, green, blue };
 
-// Slot of bump maps: see TextureUse.
-inline constexpr int kBumpSlot = -1;
+// Slots of parameters that every material has: bump map, emission, normal map and opacity.
+inline constexpr int kBumpSlot = -1, kEmissionSlot = -2, kNormalSlot = -3, kOpacitySlot = -4;
 
 // Use of a texture by one parameter of one material: offset + scale * channel of the texture, per channel of
 // a colour, clamped to the bounds [least, most], which differ from the exact bounds by rounding only. `slot`
-// numbers the parameters of a material type from 0. A bump map has the slot kBumpSlot and a scale in metres.
+// numbers the parameters of a material type from 0. Parameters of all materials have negative slots. The
+// scale of a bump map is in metres.
 struct TextureUse {
   int texture;
   int slot;
   TextureChannel channel;
   Vec3d scale{1.0};
-  double offset = 0;
+  Vec3d offset{0.0};
   Vec3d least{-std::numeric_limits<double>::infinity()}, most{std::numeric_limits<double>::infinity()};
   int material = 0;  // number in the scene
 };

@@ -33,6 +33,8 @@ struct Geometry {
   std::vector<LightKernelPtr<T>> lights;
   std::shared_ptr<const TextureStage<T>> textures;  // null if no material uses a texture
   std::vector<Vec3<T>> emission;                    // by material: see Scene; empty if nothing emits
+  // By material: SurfaceBatch::emitted replaces `emission`. Empty if no emission is textured.
+  std::vector<char> has_textured_emission;
   // Kernel of the emitting primitives that can be sampled. Null if there are none.
   LightKernelPtr<T> emitters;
   std::vector<IndexOf<T>> emitter_of;  // by primitive: index in `emitters`, or -1

@@ -47,6 +47,7 @@ class Planner {
       decide("time", seconds(plan_.time), "the motion runs from " + seconds(first) + " to " + seconds(last));
     }
     explain_textures();
+    explain_opacity();
     choose_terminator();
     open_shutter();
     choose_filter();
@@ -142,7 +143,8 @@ class Planner {
     for (std::size_t i = 0; i < scene_.textures.size(); ++i) {
       bool colours = false, bumps = false;
       for (const TextureUse& use : scene_.texture_uses)
-        if (use.texture == static_cast<int>(i)) (use.slot == kBumpSlot ? bumps : colours) = true;
+        if (use.texture == static_cast<int>(i))
+          (use.slot == kBumpSlot || use.slot == kNormalSlot ? bumps : colours) = true;
       const PlacedTexture& texture = scene_.textures[i];
       const std::string what = "texture " + texture.name;
       if (!colours && !bumps) {
@@ -154,6 +156,15 @@ class Planner {
                  (texture.filtered ? "averaged over the pixel" : "not filtered") +
                  (bumps ? colours ? "; values and bumps" : "; bumps" : ""));
     }
+  }
+
+  void explain_opacity() {
+    if (!scene_.facts.cutouts) return;
+    if (plan_.technique->rasterizes)
+      return decide("opacity", "ignored",
+                    std::string(plan_.technique->name) + " draws every surface; raycast does not",
+                    Bound::unknown());
+    decide("opacity", "rays pass", "a material in use has an opacity below 1");
   }
 
   // Smooth meshes need the normals of their vertices if light sources light an opaque material.
@@ -270,6 +281,10 @@ class Planner {
 
   void choose_prediction() {
     plan_.prediction = *plan_.asked.prediction;
+    if (plan_.prediction != Prediction::none && scene_.facts.cutouts) {
+      plan_.prediction = Prediction::none;
+      decide("shadow prediction", "none", "predicted surfaces may let rays pass");
+    }
     if (plan_.prediction != Prediction::none)
       decide("shadow prediction", std::string(name_of(plan_.prediction)),
              "as specified; every prediction is verified, so the image does not change");
@@ -316,7 +331,7 @@ class Planner {
     if (plan_.constant_half)
       decide("half vector", "computed once", "the directions to viewer and light are constant");
     if (plan_.technique->rasterizes) return;  // shadows: see explain_rasterization()
-    plan_.shadows = !lonely_convex() || scene_.facts.materials.transmits;
+    plan_.shadows = !lonely_convex() || scene_.facts.materials.transmits || scene_.facts.cutouts;
     decide("shadows", plan_.shadows ? "traced" : "none",
            plan_.shadows ? "objects may block light"
                          : "the only object is convex and seen from outside: nothing blocks its light");

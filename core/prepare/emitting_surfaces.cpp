@@ -87,12 +87,17 @@ class EmitterList {
   std::optional<Emitter<double>> emitter_of(const ShapeSet& now, int index,
                                             const Affined* world_from_model) const {
     const auto patch = now.patch(index);
-    if (!patch) return {};
+    if (!patch || !is_uniform(static_cast<std::size_t>(scene_.material_of[primitive_]))) return {};
     const Vec3d radiance = radiance_of(primitive_);
     if (world_from_model) return make_emitter(*patch, radiance, *world_from_model);
     const Emitter<double> emitter = make_emitter(*patch, radiance);
     if (emitter.is_solid() && holds_all(now.bounds(index))) return {};
     return emitter;
+  }
+  // Returns true if the whole surface emits the same radiance.
+  bool is_uniform(std::size_t material) const {
+    return !scene_.cutouts[material].lets_rays_pass() &&
+           (geometry_.has_textured_emission.empty() || !geometry_.has_textured_emission[material]);
   }
   // Returns true if the scene has several primitives, all bounded, and the box contains them. A solid with
   // this box surrounds all other primitives, and a SolidEmitter cannot be sampled from inside.

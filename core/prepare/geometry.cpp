@@ -139,6 +139,11 @@ void add_lighting(const Scene& scene, const Exposure& exposure, Geometry<T>& geo
   }
   if (scene.facts.materials.emits)
     for (const Vec3d& emission : scene.emission) geometry.emission.push_back(Vec3<T>(emission));
+  for (const TextureUse& use : scene.texture_uses) {
+    if (use.slot != kEmissionSlot) continue;
+    geometry.has_textured_emission.resize(scene.emission.size());
+    geometry.has_textured_emission[static_cast<std::size_t>(use.material)] = true;
+  }
   for (const auto& lights : scene.light_sets)
     geometry.lights.push_back(lights->size() > 0 ? lights->kernel(T()) : nullptr);
   if (scene.atmosphere) geometry.atmosphere = scene.atmosphere->kernel(T());

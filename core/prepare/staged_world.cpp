@@ -3,6 +3,7 @@
 #include "core/base/clock.h"
 #include "core/base/task_scope.h"
 #include "core/model/technique.h"
+#include "core/occlusion/cutouts.h"
 #include "core/occlusion/reordered.h"
 #include "core/prepare/occlusion_samples.h"
 #include "core/raster/screen.h"
@@ -46,7 +47,10 @@ World<T> staged_world(PreparedScene::Parts& parts, const SettledPlan& settled, d
   if (plan.technique->rasterizes) return rasterized_world<T>(parts, plan, build_ms, stop);
   const World<T> bare = world_for<T>(parts, *plan.accelerator, plan.exposure(), build_ms, stop);
   const PrimitiveList<T>& primitives = bare.geometry->primitives;
-  auto asked = plan.reorder ? reordered(bare.accelerator, plan.shutter > 0) : bare.accelerator;
+  const bool timed = plan.shutter > 0;
+  auto asked = plan.reorder ? reordered(bare.accelerator, timed) : bare.accelerator;
+  if (parts.scene->facts.cutouts)
+    return {bare.geometry, with_cutouts(bare.geometry, std::move(asked), timed)};
   if (plan.prediction == Prediction::last)
     asked = predicted_by_last(primitives, std::move(asked));
   else if (plan.prediction == Prediction::random)

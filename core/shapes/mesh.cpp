@@ -177,6 +177,8 @@ class MeshSet final : public ShapeSet {
     if (from.smooth)
       copy(table_.normals, from.first_normal, from.first_normal + mesh.positions.size(), mesh.normals);
     if (from.mapped) copy(table_.uvs, from.first_uv, from.first_uv + mesh.positions.size(), mesh.uvs);
+    if (from.colored)
+      copy(table_.colors, from.first_color, from.first_color + mesh.positions.size(), mesh.colors);
     copy(table_.triangles, from.first,
          part + 1 < table_.parts.size() ? table_.parts[part + 1].first : table_.triangles.size(),
          mesh.triangles);
@@ -200,10 +202,12 @@ class MeshSet final : public ShapeSet {
       table_.triangles.push_back({a + first_vertex, b + first_vertex, c + first_vertex});
     }
     table_.parts.push_back({first, first_vertex, table_.normals.size(), table_.uvs.size(),
-                            !mesh.normals.empty(), !mesh.uvs.empty(), box.magnitude()});
+                            table_.colors.size(), !mesh.normals.empty(), !mesh.uvs.empty(),
+                            !mesh.colors.empty(), box.magnitude()});
     table_.positions.insert(table_.positions.end(), mesh.positions.begin(), mesh.positions.end());
     table_.normals.insert(table_.normals.end(), mesh.normals.begin(), mesh.normals.end());
     table_.uvs.insert(table_.uvs.end(), mesh.uvs.begin(), mesh.uvs.end());
+    table_.colors.insert(table_.colors.end(), mesh.colors.begin(), mesh.colors.end());
   }
 
   template <class T>

@@ -36,6 +36,18 @@ TriangleMesh read_inline(Params& p) {
     p.fail("uvs", entries_text(mesh.positions.size(), "one per position", mesh.uvs.size()));
     mesh.uvs.clear();
   }
+  mesh.colors = p.points("colors", "Colour of each vertex, linear, 0 to 1; textures may use it.",
+                         {0, kLimits.vertices});
+  if (!mesh.colors.empty() && mesh.colors.size() != mesh.positions.size()) {
+    p.fail("colors", entries_text(mesh.positions.size(), "one per position", mesh.colors.size()));
+    mesh.colors.clear();
+  }
+  for (const Vec3d& color : mesh.colors)
+    if (!(std::min({color.x, color.y, color.z}) >= 0 && max_component(color) <= 1)) {
+      p.fail("colors", "must be from 0 to 1");
+      mesh.colors.clear();
+      break;
+    }
   for (const auto& triple : triples) {
     if (std::max({triple[0], triple[1], triple[2]}) >= bound) return {};  // reported by index_triples()
     mesh.triangles.push_back({static_cast<std::uint32_t>(triple[0]), static_cast<std::uint32_t>(triple[1]),

@@ -72,16 +72,24 @@ struct MeshMapping {
   }
 };
 
+// Vertex colours of a mesh triangle.
+template <class N>
+struct MeshColors {
+  Corners<N> corners, colors;
+
+  Vec3<N> color(const Ray<N>& ray) const { return colors.mix(corners.weights(ray)); }
+};
+
 // Indexed triangles of several meshes.
 template <class T>
 struct MeshTable {
   struct Part {
     std::size_t first;  // index of the first triangle of the mesh
-    std::size_t first_vertex, first_normal, first_uv;
-    bool smooth, mapped;  // whether there is one normal per vertex, and one uv per vertex
-    T magnitude;          // largest absolute coordinate of the mesh
+    std::size_t first_vertex, first_normal, first_uv, first_color;
+    bool smooth, mapped, colored;  // whether there is one normal, one uv and one colour per vertex
+    T magnitude;                   // largest absolute coordinate of the mesh
   };
-  std::vector<Vec3<T>> positions, normals;
+  std::vector<Vec3<T>> positions, normals, colors;
   std::vector<std::array<T, 2>> uvs;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<Part> parts;  // ascending by `first`
@@ -103,11 +111,13 @@ class MeshRecords {
   explicit MeshRecords(const MeshTable<double>& table) {
     for (const auto& v : table.positions) table_.positions.push_back(Vec3<T>(v));
     for (const auto& v : table.normals) table_.normals.push_back(Vec3<T>(v));
+    for (const auto& v : table.colors) table_.colors.push_back(Vec3<T>(v));
     for (const auto& [u, v] : table.uvs) table_.uvs.push_back({static_cast<T>(u), static_cast<T>(v)});
     table_.triangles = table.triangles;
     for (const auto& part : table.parts)
-      table_.parts.push_back({part.first, part.first_vertex, part.first_normal, part.first_uv, part.smooth,
-                              part.mapped, static_cast<T>(part.magnitude)});
+      table_.parts.push_back({part.first, part.first_vertex, part.first_normal, part.first_uv,
+                              part.first_color, part.smooth, part.mapped, part.colored,
+                              static_cast<T>(part.magnitude)});
     flat_.reserve(table.triangles.size());
     for (std::size_t i = 0; i < table.triangles.size(); ++i) {
       checkpoint(i);
@@ -151,6 +161,24 @@ class MeshRecords {
     }
   };
   Mappings mappings() const { return {*this}; }
+
+  template <class N>
+  using Colors = MeshColors<N>;
+  // Vertex colours of the triangles, which are 1 in meshes without colours.
+  struct ColorList {
+    const MeshRecords& records;
+    MeshColors<T> operator[](std::size_t i) const {
+      const auto& table = records.table_;
+      const auto& part = table.part_of(i);
+      const auto color = [&](std::uint32_t vertex) {
+        return part.colored ? table.colors[part.first_color + vertex - part.first_vertex] : Vec3<T>(T(1));
+      };
+      const auto& [a, b, c] = table.triangles[i];
+      return {table.corners(i), {color(a), color(b), color(c)}};
+    }
+  };
+  ColorList colors() const { return {*this}; }
+  bool has_colors() const { return !table_.colors.empty(); }
 
  private:
   MeshTable<T> table_;

@@ -144,6 +144,17 @@ class PrimitiveKernel final : public ShapeKernel<T> {
       });
   }
 
+  void colors(const RayBatch<T>& rays, const HitBatch<T>& hits, const LaneGroups& groups,
+              SurfaceBatch<T>& out) const override {
+    if constexpr (requires { records_.colors(); }) {
+      if (!records_.has_colors()) return;
+      for_each_hit(hits, groups, [&](int i, const auto& mine, const IndexLanes<T>& index) {
+        const auto record = fetch_records<Records::template Colors, T>(records_.colors(), index, mine);
+        out.color.put(i, mine, record.color(rays.at(i)));
+      });
+    }
+  }
+
  private:
   // Calls visit(register, lanes, index of their records) for each register of `groups` with hits on the set.
   template <class Visit>

@@ -13,7 +13,7 @@ PathTracer<T>::PathTracer(const World<T>& world, const Plan& plan, Lobes followe
     : Wavefront<T>(world, plan),
       followed_(followed),
       sampled_light_(this->geometry_, this->accelerator_, this->plan_, followed),
-      has_emission_pass_(!plan.eye_passes &&
+      has_emission_pass_(!plan.eye_passes && world.geometry->has_textured_emission.empty() &&
                          (!world.geometry->emission.empty() || world.geometry->background != Vec3<T>() ||
                           !sampled_light_.beyond().empty())) {
   if (sampled_light_.wants_diffuse_rays())

@@ -70,7 +70,8 @@ std::size_t wrapped(std::int64_t i, int size, Wrap wrap) {
 
 }  // namespace
 
-ImagePyramid::ImagePyramid(const TexelsPtr& image, Wrap wrap) : wrap_(wrap) {
+ImagePyramid::ImagePyramid(const TexelsPtr& image, Wrap along_u, Wrap along_v)
+    : along_u_(along_u), along_v_(along_v) {
   levels_.push_back(
       {image->width, image->height, std::shared_ptr<const std::vector<float>>(image, &image->rgb)});
   while (levels_.back().width > 1 || levels_.back().height > 1) levels_.push_back(next_level(levels_.back()));
@@ -88,8 +89,8 @@ Vec3<T> ImagePyramid::bilinear(const Level& level, T u, T v) const {
   const auto i = static_cast<std::int64_t>(left), j = static_cast<std::int64_t>(top);
   const auto texel = [&](std::int64_t column, std::int64_t row) {
     const std::vector<float>& rgb = *level.rgb;
-    const std::size_t at = (wrapped(row, level.height, wrap_) * static_cast<std::size_t>(level.width) +
-                            wrapped(column, level.width, wrap_)) *
+    const std::size_t at = (wrapped(row, level.height, along_v_) * static_cast<std::size_t>(level.width) +
+                            wrapped(column, level.width, along_u_)) *
                            3;
     return Vec3<T>(T(rgb[at]), T(rgb[at + 1]), T(rgb[at + 2]));
   };
@@ -145,8 +146,8 @@ class ImageMapKernel final : public TextureKernel<T> {
 
 class ImageMap final : public Texture {
  public:
-  ImageMap(const TexelsPtr& image, Wrap wrap, double scale)
-      : image_(std::make_shared<const ImagePyramid>(image, wrap)), scale_(scale) {
+  ImageMap(const TexelsPtr& image, Wrap along_u, Wrap along_v, double scale)
+      : image_(std::make_shared<const ImagePyramid>(image, along_u, along_v)), scale_(scale) {
     bounds_ = {Vec3d(std::numeric_limits<double>::infinity()), Vec3d(0)};
     for (std::size_t k = 0; k < image->rgb.size(); k += 3) {
       const Vec3d texel(image->rgb[k], image->rgb[k + 1], image->rgb[k + 2]);
@@ -186,20 +187,37 @@ TexelsPtr as_codes(const TexelsPtr& image) {
   return std::make_shared<const Texels>(std::move(codes));
 }
 
+// Returns the alpha of an image as grey: 1 if the image has no alpha.
+TexelsPtr alpha_of(const TexelsPtr& image) {
+  Texels grey{image->width, image->height, {}, {}};
+  grey.rgb.resize(image->rgb.size(), 1);
+  for (std::size_t i = 0; i < image->alpha.size(); ++i) {
+    checkpoint(i);
+    std::fill_n(&grey.rgb[3 * i], 3, image->alpha[i]);
+  }
+  return std::make_shared<const Texels>(std::move(grey));
+}
+
 std::shared_ptr<const Texture> read_image_map(Params& p, const AssetSource& source) {
   const TexelsPtr image = read_picture(p, source);
-  const bool is_linear =
-      p.choice(
-          "encoding",
-          "Encoding of PNG and JPEG files: sRGB, or codes / 255 as they are. EXR and HDR files are linear.",
-          {"srgb", "linear"}, "srgb") == "linear";
-  const std::string wrap =
-      p.choice("wrap", "Continuation of the image outside 0 to 1.", {"repeat", "mirror", "clamp"}, "repeat");
+  const std::string encoding = p.choice("encoding",
+                                        "Colours from sRGB codes, codes / 255 as they are, or the alpha of "
+                                        "the image as grey. EXR and HDR files are linear.",
+                                        {"srgb", "linear", "alpha"}, "srgb");
+  constexpr std::array<std::string_view, 3> kWraps{"repeat", "mirror", "clamp"};  // in the order of Wrap
+  const std::string wrap = p.choice("wrap", "Continuation of the image outside 0 to 1.", kWraps, "repeat"),
+                    wrap_v = p.choice("wrap_v", "Continuation along v; default: that of `wrap`.", kWraps,
+                                      derived(std::string_view(wrap)));
   const double scale =
       p.number("scale", "Factor of the values of the image.", {.min = 0, .max = kMaxColor}, 1.0);
   if (!image) return nullptr;
-  const Wrap mode = wrap == "repeat" ? Wrap::repeat : wrap == "mirror" ? Wrap::mirror : Wrap::clamp;
-  return std::make_shared<const ImageMap>(is_linear ? as_codes(image) : image, mode, scale);
+  const auto mode_of = [&](const std::string& name) {
+    return static_cast<Wrap>(std::find(kWraps.begin(), kWraps.end(), name) - kWraps.begin());
+  };
+  const TexelsPtr values = encoding == "linear"  ? as_codes(image)
+                           : encoding == "alpha" ? alpha_of(image)
+                                                 : image;
+  return std::make_shared<const ImageMap>(values, mode_of(wrap), mode_of(wrap_v), scale);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ class ImagePyramid {
   };
 
   // Keeps the image as level 0. Throws Cancelled.
-  ImagePyramid(const TexelsPtr& image, Wrap wrap);
+  ImagePyramid(const TexelsPtr& image, Wrap along_u, Wrap along_v);
 
   const std::vector<Level>& levels() const { return levels_; }
 
@@ -38,7 +38,7 @@ class ImagePyramid {
   Vec3<T> bilinear(const Level& level, T u, T v) const;
 
   std::vector<Level> levels_;
-  Wrap wrap_;
+  Wrap along_u_, along_v_;
 };
 
 }  // namespace orrery

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/math/angles.h"
 #include "core/params/params.h"
 
 namespace orrery {
@@ -38,6 +39,11 @@ void read_repeats(Params& p, TextureMapping& mapping) {
   constexpr Range kFactor{.min = -1e6, .max = 1e6};
   mapping.repeat = {p.number("repeat_u", "Factor of u.", kFactor, 1.0),
                     p.number("repeat_v", "Factor of v.", kFactor, 1.0)};
+  const SineCosine turn = sine_cosine_degrees(
+      p.number("turn_degrees", "Anticlockwise rotation of (u, v), in degrees, after the factors.",
+               {.min = -360, .max = 360}, 0.0));
+  mapping.cosine = turn.cosine;
+  mapping.sine = turn.sine;
   mapping.shift = {p.number("shift_u", "Number added to u.", kFactor, 0.0),
                    p.number("shift_v", "Number added to v.", kFactor, 0.0)};
 }

@@ -9,6 +9,7 @@ namespace orrery {
 #define ORRERY_TEXTURES(add) \
   add(checker)               \
   add(image_map)             \
+  add(uniform)               \
   add(noise)                 \
   add(marble)                \
   add(wood)

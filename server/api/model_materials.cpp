@@ -34,18 +34,25 @@ class ModelWriter {
     for (const int material : materials) {
       Json object{{"type", "mesh"}, {reference_.key, reference_.name}};
       if (materials.size() > 1 || material >= 0) object["part"] = material;
-      object["material"] = material < 0 ? add_material("model", plain) : add_material(material);
-      if (!has_normals(material)) object["crease_degrees"] = crease_degrees_;
+      object["material"] = material < 0 ? add_plain_material(plain) : add_material(material);
+      if (!has(material, &MeshPart::has_normals)) object["crease_degrees"] = crease_degrees_;
       scene_["objects"].push_back(std::move(object));
     }
   }
 
  private:
-  bool has_normals(int material) const {
-    const TriangleMesh& mesh = model_.mesh;
-    if (mesh.parts.empty()) return !mesh.normals.empty();
-    return std::all_of(mesh.parts.begin(), mesh.parts.end(),
-                       [&](const MeshPart& part) { return part.material != material || part.has_normals; });
+  // Returns whether all triangles with a material have an attribute.
+  bool has(int material, bool MeshPart::*attribute) const {
+    const std::vector<MeshPart>& parts = model_.mesh.parts;
+    if (parts.empty()) return only_part(model_.mesh).*attribute;
+    return std::all_of(parts.begin(), parts.end(),
+                       [&](const MeshPart& part) { return part.material != material || part.*attribute; });
+  }
+
+  // Adds the material of triangles without a material. Vertex colours replace its reflectance.
+  std::string add_plain_material(Json plain) {
+    if (has(-1, &MeshPart::has_colors)) plain["reflectance"] = {{"texture", vertex_colors()}};
+    return add_material("model", std::move(plain));
   }
 
   // Adds a material under a name that no other material has. Returns the name.
@@ -60,38 +67,64 @@ class ModelWriter {
 
   std::string add_material(int index) {
     const ModelMaterial& from = model_.materials[static_cast<std::size_t>(index)];
+    const bool colored = has(index, &MeshPart::has_colors);
     Json json{{"type", "metallic-roughness"}};
-    json["base_color"] = value_of(from.base_color, "srgb");
-    json["metallic"] = value_of(from.metallic, from.metallic_channel);
-    json["roughness"] = value_of(from.roughness, from.roughness_channel);
-    if (!(from.emission.factor == Vec3d(0))) json["emission"] = numbers(from.emission.factor);
+    if (from.unlit) {  // shows its colour in any light
+      json = {{"type", "lambert"}, {"reflectance", 0}, {"emission", color_of(from.base_color, colored)}};
+    } else {
+      json["base_color"] = color_of(from.base_color, colored);
+      json["metallic"] = number_of(from.metallic, from.metallic_channel);
+      json["roughness"] = number_of(from.roughness, from.roughness_channel);
+      if (!(from.normal_reflectance == Vec3d(0.04)))
+        json["normal_reflectance"] = numbers(from.normal_reflectance);
+      if (!(from.emission.factor == Vec3d(0))) json["emission"] = color_of(from.emission, false);
+      if (from.normal && from.normal->texture) {
+        json["normal_map"] = {{"texture", texture_name(*from.normal->texture, "linear", false)}};
+        if (from.normal->factor != 1) json["normal_map"]["scale"] = from.normal->factor;
+      }
+    }
+    add_opacity(from, json);
     return add_material(from.name, std::move(json));
   }
 
-  Json value_of(const ModelValue<Vec3d>& value, const char* encoding) {
-    if (!value.texture) return numbers(value.factor);
-    Json json{{"texture", texture_name(*value.texture, encoding)}};
+  void add_opacity(const ModelMaterial& from, Json& json) {
+    if (from.alpha == ModelMaterial::Alpha::opaque) return;
+    if (from.alpha == ModelMaterial::Alpha::mask) json["alpha_cutoff"] = from.cutoff;
+    json["opacity"] = from.opacity;
+    if (!from.base_color.texture || from.opacity == 0) return;
+    json["opacity"] = {{"texture", texture_name(*from.base_color.texture, "alpha", false)}};
+    if (from.opacity != 1) json["opacity"]["scale"] = from.opacity;
+  }
+
+  // `colored`: vertex colours multiply the value.
+  Json color_of(const ModelValue<Vec3d>& value, bool colored) {
+    if (!value.texture && !colored) return numbers(value.factor);
+    Json json{{"texture", value.texture ? texture_name(*value.texture, "srgb", colored) : vertex_colors()}};
     if (!(value.factor == Vec3d(1))) json["tint"] = numbers(value.factor);
     return json;
   }
-  Json value_of(const ModelValue<double>& value, Channel channel) {
+  Json number_of(const ModelValue<double>& value, Channel channel) {
     if (!value.texture || value.factor == 0) return value.factor;
-    Json json{{"texture", texture_name(*value.texture, "linear")}, {"channel", name_of(channel)}};
+    Json json{{"texture", texture_name(*value.texture, "linear", false)}, {"channel", name_of(channel)}};
     if (value.factor != 1) json["scale"] = value.factor;
     return json;
   }
 
   // Returns the name of a texture, which it adds if the scene lacks it.
-  std::string texture_name(const ModelTexture& texture, const char* encoding) {
+  std::string texture_name(const ModelTexture& texture, const char* encoding, bool colored) {
     Json json{{"type", "image"},
               {reference_.key, reference_.name},
               {"image", texture.image},
               {"encoding", encoding},
               {"wrap", name_of(texture.wrap)}};
-    if (texture.repeat != std::array{1.0, 1.0} || texture.shift != std::array{0.0, 0.0})
+    if (texture.wrap_v != texture.wrap) json["wrap_v"] = name_of(texture.wrap_v);
+    if (colored) json["vertex_colors"] = true;
+    if (texture.repeat != std::array{1.0, 1.0} || texture.shift != std::array{0.0, 0.0} ||
+        texture.turn_degrees != 0)
       json["mapping"] = {{"type", "uv"},
                          {"repeat_u", texture.repeat[0]},
                          {"repeat_v", texture.repeat[1]},
+                         {"turn_degrees", texture.turn_degrees},
                          {"shift_u", texture.shift[0]},
                          {"shift_v", texture.shift[1]}};
     Json& textures = scene_["textures"];
@@ -101,6 +134,10 @@ class ModelWriter {
       name = start + " " + std::to_string(k);
     textures[name] = std::move(json);
     return name;
+  }
+  std::string vertex_colors() {
+    scene_["textures"]["vertex colours"] = {{"type", "uniform"}, {"vertex_colors", true}};
+    return "vertex colours";
   }
 
   Json& scene_;

@@ -11,7 +11,9 @@ namespace orrery {
 
 namespace {
 
-std::size_t bytes_of(const Texels& picture) { return picture.rgb.size() * sizeof(float); }
+std::size_t bytes_of(const Texels& picture) {
+  return (picture.rgb.size() + picture.alpha.size()) * sizeof(float);
+}
 
 std::size_t bytes_of(const AssetStore::Asset& asset) {
   constexpr std::size_t kEntry = 1024;  // overhead of an entry in bytes

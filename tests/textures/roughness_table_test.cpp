@@ -38,7 +38,7 @@ TEST(RoughnessTable, InterpolatesAlbedos) {
   EXPECT_LT(largest_error(metal, [](const auto& inputs) { return inputs.albedo; }), 1e-3);
   PlasticInputs<double> plastic{Vec3d(0.5), 1.5, 0.5, 0, {}, 0};
   EXPECT_LT(largest_error(plastic, [](const auto& inputs) { return inputs.mirror; }), 1e-3);
-  MetallicRoughnessInputs<double> both{Vec3d(0.5), 0, 0, 0.5, 0, {}, {}};
+  MetallicRoughnessInputs<double> both{Vec3d(0.5), Vec3d(0.04), 0, 0, 0.5, 0, {}, {}};
   EXPECT_LT(largest_error(both, [](const auto& inputs) { return inputs.grazing; }), 1e-3);
   GlassInputs<double> glass{Vec3d(1), 1.5, 0, 0.5, 0, {}, {}, 0, 0};
   EXPECT_LT(largest_error(glass, [](const auto& inputs) { return inputs.outside; }), 2e-3);

@@ -31,6 +31,8 @@ Json constant_texture(const std::string& type, const Vec3d& color) {
   Json texture = {{"type", type}};
   if (type == "image")
     texture["file"] = "constant";
+  else if (type == "uniform")
+    texture["color"] = numbers(color);
   else
     for (const char* key : type == "checker"  ? std::array{"even", "odd"}
                            : type == "marble" ? std::array{"stone", "vein"}

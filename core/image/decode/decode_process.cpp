@@ -160,6 +160,23 @@ std::size_t read_full(int from, std::span<std::byte> bytes) {
   return got;
 }
 
+// Reads texels with alpha by read(values), which fills a list, and separates the alpha.
+template <class Read>
+void read_with_alpha(const Read& read, Texels& picture) {
+  constexpr std::size_t kAtOnce = 16384;  // texels
+  picture.alpha.resize(picture.rgb.size() / 3);
+  std::vector<float> values;
+  for (std::size_t at = 0; at < picture.alpha.size(); at += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, picture.alpha.size() - at);
+    values.resize(4 * count);
+    read(values);
+    for (std::size_t i = 0; i < count; ++i) {
+      std::copy_n(&values[4 * i], 3, &picture.rgb[3 * (at + i)]);
+      picture.alpha[at + i] = values[4 * i + 3];
+    }
+  }
+}
+
 [[noreturn]] void fail_ended(int status) {
   if (WIFSIGNALED(status))
     throw InputError("", std::string("cannot decode image: a signal ended the decoder (") +
@@ -190,10 +207,16 @@ Texels decode_in_process(const PictureFile& file) {
     throw InputError("", "image is damaged: decoded size must equal the size in the header, " +
                              std::to_string(file.width) + " x " + std::to_string(file.height) + " (got " +
                              std::to_string(header.width) + " x " + std::to_string(header.height) + ")");
-  Texels picture{static_cast<int>(header.width), static_cast<int>(header.height), {}};
+  Texels picture{static_cast<int>(header.width), static_cast<int>(header.height), {}, {}};
   picture.rgb.resize(std::size_t{3} * header.width * header.height);
-  const std::span<std::byte> texels = std::as_writable_bytes(std::span(picture.rgb));
-  if (read_full(output.get(), texels) < texels.size()) fail_ended(decoder.wait());
+  const auto read = [&](std::span<float> values) {
+    const std::span<std::byte> bytes = std::as_writable_bytes(values);
+    if (read_full(output.get(), bytes) < bytes.size()) fail_ended(decoder.wait());
+  };
+  if (header.channels == 3)
+    read(picture.rgb);
+  else
+    read_with_alpha(read, picture);
   return picture;
 }
 

@@ -19,8 +19,9 @@ namespace orrery {
 // Decoded image in linear light.
 struct Texels {
   int width = 0, height = 0;
-  std::vector<float> rgb;  // red, green, blue per texel; top row first
-  bool from_srgb = false;  // the values were decoded from sRGB codes
+  std::vector<float> rgb = {};    // red, green, blue per texel; top row first
+  std::vector<float> alpha = {};  // per texel, 0 to 1; empty if the image has no alpha
+  bool from_srgb = false;         // the values were decoded from sRGB codes
 };
 using TexelsPtr = std::shared_ptr<const Texels>;
 
@@ -60,8 +61,8 @@ bool is_picture(std::string_view bytes);
 PictureFormat picture_format(std::string_view bytes);
 
 // Reads an OpenEXR, Radiance HDR, PNG or JPEG file. The first bytes determine the format. EXR and HDR are
-// linear. PNG and JPEG are decoded from sRGB. One channel is grey. A second or fourth channel is alpha and is
-// dropped. The same bytes always give the same texels. The file is decoded in a separate process
+// linear. PNG and JPEG are decoded from sRGB. One channel is grey. A second or fourth channel is alpha. The
+// same bytes always give the same texels. The file is decoded in a separate process
 // (core/image/decode/decode_process.h).
 //
 // The size in the header is checked before decoding. Texels must be finite and in 0 to kMaxTexel. Throws

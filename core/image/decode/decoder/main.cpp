@@ -37,7 +37,7 @@ void write_all(std::span<const std::byte> bytes) {
 [[noreturn]] void fail(std::string text) {
   constexpr std::size_t kMaxText = 500;
   text.resize(std::min(text.size(), kMaxText));
-  const DecodedHeader header{static_cast<std::uint32_t>(text.size()), 0, 0};
+  const DecodedHeader header{static_cast<std::uint32_t>(text.size()), 0, 0, 0};
   write_all(std::as_bytes(std::span(&header, 1)));
   write_all(std::as_bytes(std::span(text)));
   std::_Exit(0);
@@ -127,13 +127,23 @@ void read_rows(OIIO::ImageInput& input, int begin, int end, std::vector<Sample>&
   if (!read) fail_damaged(input.geterror());
 }
 
-// Writes the header, then red, green and blue of each texel, converted by `light`. Grey is written three
-// times. Alpha is dropped.
+// Returns the alpha of a sample, from 0 to 1.
+template <class Sample>
+float alpha_of(Sample sample) {
+  if constexpr (std::is_floating_point_v<Sample>)
+    return std::min(1.0F, std::max(0.0F, sample));  // NaN becomes 0
+  else
+    return static_cast<float>(static_cast<double>(sample) / std::numeric_limits<Sample>::max());
+}
+
+// Writes the header, then red, green and blue of each texel, converted by `light`, and its alpha. Grey is
+// written three times.
 template <class Sample>
 void decode(OIIO::ImageInput& input, const auto& light) {
   const OIIO::ImageSpec& spec = input.spec();
+  const bool has_alpha = spec.nchannels == 2 || spec.nchannels == 4;
   const DecodedHeader header{0, static_cast<std::uint32_t>(spec.width),
-                             static_cast<std::uint32_t>(spec.height)};
+                             static_cast<std::uint32_t>(spec.height), has_alpha ? 4U : 3U};
   const int rows = spec.tile_width > 0 ? std::min(spec.tile_height, spec.height) : orrery::kRowsAtOnce;
   const auto channels = static_cast<std::size_t>(spec.nchannels);
   const bool grey = channels < 3;
@@ -142,8 +152,10 @@ void decode(OIIO::ImageInput& input, const auto& light) {
   for (int y = 0; y < spec.height; y += rows) {
     read_rows(input, y, std::min(spec.height, y + rows), samples);
     texels.clear();
-    for (std::size_t at = 0; at + channels <= samples.size(); at += channels)
+    for (std::size_t at = 0; at + channels <= samples.size(); at += channels) {
       for (std::size_t c = 0; c < 3; ++c) texels.push_back(light(samples[at + (grey ? 0 : c)]));
+      if (has_alpha) texels.push_back(alpha_of(samples[at + channels - 1]));
+    }
     if (y == 0) write_all(std::as_bytes(std::span(&header, 1)));
     write_all(std::as_bytes(std::span(texels)));
   }
