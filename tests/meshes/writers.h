@@ -214,4 +214,50 @@ inline Gltf gltf_of(const TriangleMesh& mesh) {
 inline const std::string kOneMesh =
     R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],"nodes":[{"mesh":0}])";
 
+// Returns the CRC-32 of ISO 3309, which ZIP archives store.
+inline std::uint32_t crc32_of(std::string_view bytes) {
+  std::uint32_t crc = ~0u;
+  for (const char byte : bytes) {
+    crc ^= static_cast<unsigned char>(byte);
+    for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ (crc & 1 ? 0xedb88320u : 0);
+  }
+  return ~crc;
+}
+
+// Builder of a ZIP archive. Entries are stored, unless their packed bytes are given.
+class Zip {
+ public:
+  // `packed`: bytes in the archive, if they differ from the content. `method`: 0 stored, 8 deflated.
+  Zip& add(const std::string& name, const std::string& content) { return add(name, content, content, 0); }
+  Zip& add(const std::string& name, const std::string& content, const std::string& packed,
+           std::uint16_t method) {
+    std::string fields;  // members that both headers contain
+    append(fields, method);
+    append(fields, std::uint32_t{0});  // date
+    for (const std::size_t value : {std::size_t{crc32_of(content)}, packed.size(), content.size()})
+      append(fields, static_cast<std::uint32_t>(value));
+    append(fields, static_cast<std::uint16_t>(name.size()));
+    append(fields, std::uint16_t{0});
+    const auto first = static_cast<std::uint32_t>(bytes_.size());
+    bytes_ += std::string("PK\3\4\x14\0\0\0", 8) + fields + name + packed;
+    directory_ += std::string("PK\1\2\x14\0\x14\0\0\0", 10) + fields + std::string(10, '\0');
+    append(directory_, first);
+    directory_ += name;
+    ++count_;
+    return *this;
+  }
+  std::string bytes() const {
+    std::string out = bytes_ + directory_ + std::string("PK\5\6\0\0\0\0", 8);
+    append(out, count_);
+    append(out, count_);
+    append(out, static_cast<std::uint32_t>(directory_.size()));
+    append(out, static_cast<std::uint32_t>(bytes_.size()));
+    return out + std::string(2, '\0');
+  }
+
+ private:
+  std::string bytes_, directory_;
+  std::uint16_t count_ = 0;
+};
+
 }  // namespace orrery::test
