@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/math/decode_srgb.h"
 #include "core/math/lanes.h"
 
 // Transfer function of sRGB (IEC 61966-2-1), for a scalar or lanes.
@@ -40,11 +41,6 @@ template <class N>
   const N x = min_first(N(Scalar(1)), max_first(N(Scalar(0)), linear));
   return select(x <= N(static_cast<Scalar>(srgb::kEndOfLine)), x * N(static_cast<Scalar>(12.92)),
                 srgb::curve(x));
-}
-
-// Decodes an sRGB code / 255 to linear, both in [0, 1].
-inline float decode_srgb(float encoded) {
-  return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
 }
 
 }  // namespace orrery

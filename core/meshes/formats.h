@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/shorten.h"
+#include "core/math/decode_srgb.h"
 #include "core/meshes/model.h"
 
 // Declarations shared by the readers of mesh formats.
@@ -44,6 +45,12 @@ inline void check_triangles(std::size_t count, const MeshLimits& limits) {
 
 inline bool is_finite(const Vec3d& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+// Decodes a colour of sRGB codes / 255, each in [0, 1].
+inline Vec3d decode_srgb(const Vec3d& encoded) {
+  const auto decode = [](double x) -> double { return decode_srgb(static_cast<float>(x)); };
+  return {decode(encoded.x), decode(encoded.y), decode(encoded.z)};
 }
 
 // Returns the shortest decimal that converts back to the same number.

@@ -58,7 +58,8 @@ MeshFormat mesh_format(std::string_view bytes);
 // Reads an OBJ, PLY (ASCII, binary of either byte order), STL (ASCII, binary) or glTF 2.0 file (.glb, or
 // .gltf). Detects the format from the content. Text may be UTF-8 or, with a byte order mark, UTF-16. Buffers
 // of glTF files that are neither in the file nor in data: URIs are read by `nearby`; without it, they are an
-// error. The same bytes give the same mesh.
+// error. Material libraries and images are read by `nearby`, too; without it, they give notes. The same bytes
+// give the same mesh.
 //
 // Merges all geometry of the file into one mesh without parts. Its notes name the contents that it lacks,
 // such as animations. read_model() in core/meshes/model.h reads the parts and their materials, too. Divides

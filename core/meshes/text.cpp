@@ -1,6 +1,7 @@
 #include "core/meshes/text.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -17,6 +18,23 @@ bool is_blank(char c) { return static_cast<unsigned char>(c) <= ' ' && !is_line_
 // Removes a leading "+", which from_chars does not accept.
 std::string_view unsigned_plus(std::string_view word) {
   return word.size() > 1 && word[0] == '+' && word[1] != '-' ? word.substr(1) : word;
+}
+
+// Returns the number of bytes of the first character, or 0 if it is not valid.
+std::size_t character_size(std::string_view text) {
+  const auto lead = static_cast<unsigned char>(text[0]);
+  if (lead < 0x80) return 1;
+  const std::size_t size = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
+  if (lead < 0xc2 || lead > 0xf4 || text.size() < size) return 0;
+  std::uint32_t code = lead & (0x7fu >> size);
+  for (std::size_t i = 1; i < size; ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    if ((byte & 0xc0) != 0x80) return 0;
+    code = code << 6 | (byte & 0x3f);
+  }
+  constexpr std::array<std::uint32_t, 5> kSmallest{0, 0, 0x80, 0x800, 0x10000};
+  const bool is_surrogate = code >= 0xd800 && code < 0xe000;
+  return code < kSmallest[size] || code > 0x10ffff || is_surrogate ? 0 : size;
 }
 
 }  // namespace
@@ -49,6 +67,15 @@ std::string_view TextReader::word_of_line() {
   const std::string_view word = rest_.substr(from, to - from);
   rest_.remove_prefix(to);
   return word;
+}
+
+std::string_view TextReader::rest_of_line() {
+  checkpoint();
+  std::string_view line = rest_.substr(0, rest_.find_first_of("\r\n"));
+  rest_.remove_prefix(line.size());
+  while (!line.empty() && is_blank(line.front())) line.remove_prefix(1);
+  while (!line.empty() && is_blank(line.back())) line.remove_suffix(1);
+  return line;
 }
 
 std::string_view TextReader::word() {
@@ -131,6 +158,20 @@ std::string excerpt(std::string_view text, std::size_t longest) {
   for (char& c : shown)
     if (c < ' ' || c > '~') c = '?';
   return '"' + shown + (text.size() > longest ? "...\"" : "\"");
+}
+
+std::string as_utf8(std::string_view text) {
+  std::string valid(text);
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t size = character_size(text.substr(i));
+    if (size == 0) {
+      for (char& c : valid)
+        if (static_cast<unsigned char>(c) >= 0x80) c = '?';
+      break;
+    }
+    i += size;
+  }
+  return valid;
 }
 
 }  // namespace orrery

@@ -16,6 +16,8 @@ class TextReader {
 
   // Returns the next word of this line, or an empty string at the end of the line.
   std::string_view word_of_line();
+  // Returns the rest of this line without blanks around it. A backslash at its end does not join lines.
+  std::string_view rest_of_line();
   // Returns the next word on this line or a later one, or an empty string at the end of the text.
   std::string_view word();
   // Moves to the start of the next line. With `may_join`, also skips the lines that are joined to this one.
@@ -48,5 +50,9 @@ class TextReader {
 // Returns `text` for a message: quoted, truncated to `longest` bytes, and with "?" for each byte that is not
 // printable ASCII.
 std::string excerpt(std::string_view text, std::size_t longest = 40);
+
+// Returns the text if it is valid UTF-8 (RFC 3629), and else with "?" for each byte that is not ASCII. Names
+// of materials can have any encoding.
+std::string as_utf8(std::string_view text);
 
 }  // namespace orrery

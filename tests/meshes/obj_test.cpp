@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/meshes/model.h"
 #include "tests/meshes/writers.h"
 
 namespace orrery::test {
@@ -114,8 +115,44 @@ TEST(Obj, IgnoresTextureIndicesWithoutCoordinates) {
 TEST(Obj, NotesContentsThatAreNotModelled) {
   const TriangleMesh mesh =
       read_mesh("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\nl 1 2\nl 2 3\np 1\n");
-  EXPECT_EQ(mesh.notes, (std::vector<std::string>{"materials are not modelled", "2 lines are not rendered",
-                                                  "1 points are not rendered"}));
+  EXPECT_EQ(mesh.notes,
+            (std::vector<std::string>{"material library \"a.mtl\" is missing: other files are not available",
+                                      "2 lines are not rendered", "1 points are not rendered"}));
+}
+
+TEST(Obj, KeepsAttributesThatAllCornersOfAPartHave) {
+  const MeshModel model =
+      read_model(kFour +
+                     "vn 0 0 1\nvt 0.5 0\nvt 0 0.5\nmtllib m\nusemtl a\nf 1/1/1 2/2/1 3/1/1\n"
+                     "usemtl b\nf 1//1 3//1 4//1\nusemtl a\nf 2/1/1 3/2/1 4/1\n",
+                 {}, [](const std::string&) { return "newmtl a\nnewmtl b\n"; });
+  ASSERT_EQ(model.materials.size(), 2u);
+  ASSERT_EQ(model.mesh.parts.size(), 2u);
+  const TriangleMesh a = part_of(model.mesh, 0), b = part_of(model.mesh, 1);
+  EXPECT_EQ(corners_of(a)[1], (Corners{Vec3d(1, 0, 0), Vec3d(1, 1, 0), Vec3d(0, 1, 0)}));
+  EXPECT_TRUE(a.normals.empty());
+  EXPECT_EQ(a.uvs[a.triangles[0][1]], (std::array<double, 2>{0, 0.5}));
+  EXPECT_EQ(corners_of(b)[0], (Corners{Vec3d(0, 0, 0), Vec3d(1, 1, 0), Vec3d(0, 1, 0)}));
+  EXPECT_EQ(b.normals.size(), 3u);
+  EXPECT_TRUE(b.uvs.empty());
+}
+
+TEST(Obj, ReadsColoursOfVertices) {
+  const auto colors = [](const std::string& text) { return read_mesh(text + "f 1 2 3\n").colors; };
+  // Codes of 0.5 and 1, as tables of sRGB list them.
+  const auto half = [](const Vec3d& color) {
+    return std::abs(color.x - 0.214041) < 1e-6 && color.y == 0 && color.z == 1;
+  };
+  EXPECT_TRUE(half(colors("v 0 0 0 0.5 0 1\nv 1 0 0 0 0 0\nv 0 1 0 1 1 1\n").at(0)));
+  EXPECT_TRUE(half(colors("v 0 0 0 127.5 0 255\nv 1 0 0 0 0 0\nv 0 1 0 1 1 1\n").at(0)));
+  EXPECT_TRUE(half(colors("v 0 0 0 1 0.5 0 1\nv 1 0 0 1 0 0 0\nv 0 1 0 1 1 1 1\n").at(0)));
+  EXPECT_TRUE(colors("v 0 0 0 1 # 1 1\nv 1 0 0 2\nv 0 1 0 1 1\n").empty());
+  EXPECT_TRUE(colors("v 0 0 0 1 1 nan\nv 1 0 0 -1 0 0\nv 0 1 0 256 0 0\n").empty());
+
+  const TriangleMesh mesh =
+      read_mesh("v 0 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nv 0 0 1 1 0 0\nf 1 2 3\nf 2 3 4\n");
+  EXPECT_TRUE(mesh.colors.empty());
+  EXPECT_EQ(mesh.notes, std::vector<std::string>{"1 of 4 vertices have no colour"});
 }
 
 }  // namespace
