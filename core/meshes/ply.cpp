@@ -8,14 +8,32 @@ namespace orrery {
 namespace {
 
 // Vertex values that a mesh stores.
-enum Slot : std::size_t { kX, kY, kZ, kNx, kNy, kNz, kU, kV, kSlots };
+enum Slot : std::size_t { kX, kY, kZ, kNx, kNy, kNz, kU, kV, kRed, kGreen, kBlue, kSlots };
 struct SlotName {
   std::string_view name;
   Slot slot;
 };
-constexpr SlotName kSlotNames[] = {{"x", kX},   {"y", kY},   {"z", kZ},         {"nx", kNx},
-                                   {"ny", kNy}, {"nz", kNz}, {"u", kU},         {"v", kV},
-                                   {"s", kU},   {"t", kV},   {"texture_u", kU}, {"texture_v", kV}};
+constexpr SlotName kSlotNames[] = {{"x", kX},
+                                   {"y", kY},
+                                   {"z", kZ},
+                                   {"nx", kNx},
+                                   {"ny", kNy},
+                                   {"nz", kNz},
+                                   {"u", kU},
+                                   {"v", kV},
+                                   {"s", kU},
+                                   {"t", kV},
+                                   {"texture_u", kU},
+                                   {"texture_v", kV},
+                                   {"red", kRed},
+                                   {"green", kGreen},
+                                   {"blue", kBlue},
+                                   {"r", kRed},
+                                   {"g", kGreen},
+                                   {"b", kBlue},
+                                   {"diffuse_red", kRed},
+                                   {"diffuse_green", kGreen},
+                                   {"diffuse_blue", kBlue}};
 
 Slot slot_of(const PlyProperty& property) {
   for (const auto& [name, slot] : kSlotNames)
@@ -27,7 +45,16 @@ bool is_polygon(const PlyProperty& property) {
   return property.count_type && (property.name == "vertex_indices" || property.name == "vertex_index");
 }
 
-bool is_colour(const PlyProperty& property) { return property.name.ends_with("red") || property.name == "r"; }
+bool is_color(const PlyProperty& property) {
+  const Slot slot = slot_of(property);
+  return slot == kRed || slot == kGreen || slot == kBlue;
+}
+
+// Returns the value that stands for a full colour channel. Text files store bytes as any integer type.
+double full_channel(PlyType type) {
+  if (type == PlyType::float32 || type == PlyType::float64) return 1;
+  return type == PlyType::uint16 ? 65535 : 255;
+}
 
 template <class Body>
 class PlyReader {
@@ -56,9 +83,12 @@ class PlyReader {
     if (header_.skipped_lines > 0)
       mesh_.notes.push_back(grouped(header_.skipped_lines) + " header lines without a keyword were skipped");
     for (const PlyElement& element : header_.elements)
-      if (element.name == "vertex" && std::any_of(element.properties.begin(), element.properties.end(),
-                                                  [](const PlyProperty& p) { return is_colour(p); }))
-        mesh_.notes.push_back("vertex colours are not modelled");
+      if (element.name == "face" &&
+          std::any_of(element.properties.begin(), element.properties.end(), is_color))
+        mesh_.notes.push_back("colours of faces are not modelled");
+    if (clamped_colors_ > 0)
+      mesh_.notes.push_back(grouped(clamped_colors_) +
+                            " colours beyond the range of their type were clamped");
   }
 
   void count_vertices() {
@@ -90,9 +120,18 @@ class PlyReader {
     if (!has[kX] || !has[kY] || !has[kZ]) body_.fail("vertex must have the properties x, y and z");
     has_normals_ = has[kNx] && has[kNy] && has[kNz];
     has_uvs_ = has[kU] && has[kV];
+    has_colors_ = has[kRed] && has[kGreen] && has[kBlue];
+    for (const PlyProperty& property : element.properties)
+      if (is_color(property)) full_color_[slot_of(property) - kRed] = full_channel(property.type);
     mesh_.positions.reserve(element.count);
     if (has_normals_) mesh_.normals.reserve(element.count);
     if (has_uvs_) mesh_.uvs.reserve(element.count);
+    if (has_colors_) mesh_.colors.reserve(element.count);
+    read_rows(element);
+    decode_colors();
+  }
+
+  void read_rows(const PlyElement& element) {
     const bool lists = std::any_of(element.properties.begin(), element.properties.end(),
                                    [](const PlyProperty& p) { return p.count_type.has_value(); });
     if constexpr (Body::kBinary)
@@ -146,6 +185,27 @@ class PlyReader {
     mesh_.positions.push_back(position);
     if (has_normals_) mesh_.normals.push_back(normal);
     if (has_uvs_) mesh_.uvs.push_back({values[kU], values[kV]});
+    if (has_colors_) mesh_.colors.push_back({values[kRed], values[kGreen], values[kBlue]});
+  }
+
+  // Colours are sRGB codes, also as floats, which Blender and MeshLab read and write as such. Floats above 1
+  // are bytes.
+  void decode_colors() {
+    std::array<double, 3> full = full_color_;
+    for (const Vec3d& color : mesh_.colors)
+      for (std::size_t k = 0; k < 3; ++k)
+        if (full_color_[k] == 1 && color[k] > 1) full[k] = 255;
+    for (Vec3d& color : mesh_.colors) {
+      checkpoint();
+      bool in_range = true;
+      for (std::size_t k = 0; k < 3; ++k) {
+        color[k] /= full[k];
+        in_range = in_range && color[k] >= 0 && color[k] <= 1;
+        color[k] = std::fmin(1, std::fmax(0, color[k]));  // NaN gives 0
+      }
+      if (!in_range) ++clamped_colors_;
+      color = decode_srgb(color);
+    }
   }
 
   void read_faces(const PlyElement& element) {
@@ -215,7 +275,9 @@ class PlyReader {
   const MeshLimits& limits_;
   Body body_;
   std::uint64_t vertices_ = 0;  // vertex count of the header, because faces may precede vertices
-  bool has_normals_ = false, has_uvs_ = false;
+  bool has_normals_ = false, has_uvs_ = false, has_colors_ = false;
+  std::array<double, 3> full_color_{1, 1, 1};  // value of a full channel
+  std::size_t clamped_colors_ = 0;
   TriangleMesh mesh_;
   std::vector<Fan> fans_;  // polygons with more than three corners
 };

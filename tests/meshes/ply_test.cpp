@@ -195,5 +195,48 @@ TEST(Ply, SkipsHeaderLinesWithoutKeyword) {
   EXPECT_NE(problem(bytes).find("must be a PLY header keyword (got \"Created\")"), std::string::npos);
 }
 
+// Returns the colours of a triangle whose vertices have three properties of a type, with these names.
+std::vector<Vec3d> ply_colors(const std::string& type, const std::string& prefix, const std::string& first) {
+  std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+  for (const char* name : {"red", "green", "blue"}) text += "property " + type + ' ' + prefix + name + '\n';
+  text += "property uchar alpha\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  return read_mesh(text + "0 0 0 " + first + " 9\n1 0 0 0 0 0 9\n0 1 0 1 0 0 9\n3 0 1 2\n").colors;
+}
+
+// The linear values of the codes 188 and 55 are those of tables of sRGB.
+TEST(Ply, DecodesColoursOfVertices) {
+  for (const auto& colors :
+       {ply_colors("uchar", "", "188 55 255"), ply_colors("int", "diffuse_", "188 55 255"),
+        ply_colors("ushort", "", "48316 14135 65535"), ply_colors("float", "", "188 55 255"),
+        ply_colors("double", "", "0.737254901960784 0.215686274509804 1")}) {
+    ASSERT_EQ(colors.size(), 3u);
+    EXPECT_NEAR(colors[0].x, 0.502886, 1e-6);
+    EXPECT_NEAR(colors[0].y, 0.038204, 1e-6);
+    EXPECT_EQ(colors[0].z, 1);
+    EXPECT_EQ(colors[1], Vec3d(0));
+  }
+  EXPECT_TRUE(ply_colors("uchar", "ambient_", "1 2 3").empty());
+}
+
+TEST(Ply, ClampsColoursWithANote) {
+  const std::string head = "ply\nformat binary_little_endian 1.0\nelement vertex 3\n";
+  std::string text = head;
+  for (const char* name : {"x", "y", "z", "red", "green", "blue"})
+    text += std::string("property float ") + name + '\n';
+  text += "element face 1\nproperty list uchar int vertex_indices\nproperty uchar red\nend_header\n";
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const float value :
+       {0.f, 0.f, 0.f, -1.f, 1.f, nan, 1.f, 0.f, 0.f, 0.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 0.f})
+    append(text, value);
+  append(text, std::uint8_t{3});
+  for (const std::uint32_t i : {0u, 1u, 2u}) append(text, i);
+  append(text, std::uint8_t{1});
+  const TriangleMesh mesh = read_mesh(text);
+  EXPECT_EQ(mesh.colors.at(0), Vec3d(0, 1, 0));
+  EXPECT_EQ(mesh.notes, (std::vector<std::string>{"colours of faces are not modelled",
+                                                  "1 colours beyond the range of their type were clamped"}));
+}
+
 }  // namespace
 }  // namespace orrery::test
