@@ -66,8 +66,8 @@ MeshFormat mesh_format(std::string_view bytes);
 // polygons into triangles: see divide_polygons(). Keeps triangles without area. Keeps normals only if all
 // vertices have normals, and keeps uvs only if all vertices have uvs. Replaces zero-length normals with
 // normals computed from the faces around the vertex. A mesh from STL has no normals and no uvs. Corners of an
-// STL file at equal positions become one vertex. Replaces v of glTF by 1 - v, so that (0, 0) is at the lower
-// left.
+// STL file at equal positions, and of one colour, become one vertex. Replaces v of glTF by 1 - v, so that (0,
+// 0) is at the lower left.
 //
 // Throws InputError (pointer "") with the place in the file, the value and the limit. Before allocating
 // memory, checks every size in the file against `limits` and the number of available bytes. Throws Cancelled.

@@ -1,11 +1,14 @@
 #include <bit>
+#include <optional>
 
+#include "core/base/task_scope.h"
 #include "core/meshes/formats.h"
 #include "core/meshes/text.h"
 #include "core/meshes/vertex_list.h"
 
 // Stereolithography files (3D Systems, 1989). Stored facet normals are ignored, because many programs write
-// 0. The order of the corners determines the front side.
+// 0. The order of the corners determines the front side. Colours of facets follow the extensions of VisCAM
+// and Materialise Magics.
 namespace orrery {
 namespace {
 
@@ -14,21 +17,74 @@ namespace {
 constexpr std::size_t kHeader = 84, kFacet = 50, kCorner = 12;
 constexpr std::size_t kMaxTrailing = 4096;  // bytes after the last triangle, as some programs write
 
-std::uint32_t little_endian(const char* bytes) {
+std::uint32_t little_endian(const char* bytes, int size = 4) {
   std::uint32_t value = 0;
-  for (int i = 3; i >= 0; --i) value = value << 8 | static_cast<unsigned char>(bytes[i]);
+  for (int i = size - 1; i >= 0; --i) value = value << 8 | static_cast<unsigned char>(bytes[i]);
   return value;
 }
 
+// Colours of the facets of a binary file, which are in their last two bytes. VisCAM: bit 15 marks a colour,
+// with blue in the lowest 5 bits, then green and red. Magics: the header has "COLOR=" and the 4 bytes of the
+// colour of the object, and bit 15 marks facets of that colour. Others have their own, with red in the lowest
+// bits.
+class FacetColors {
+ public:
+  // Reads the bytes of all facets. Many programs write 0 or other data there, so a file has colours only if
+  // some bytes are not 0 and, without the header of Magics, if bit 15 is set where they are not 0.
+  FacetColors(std::string_view bytes, std::size_t count) : bytes_(bytes) {
+    constexpr std::string_view kKey = "COLOR=";
+    constexpr std::size_t kHeaderText = 80, kColor = 4;
+    const std::size_t at = bytes.substr(0, kHeaderText - kColor).find(kKey);
+    if (at != bytes.npos) {
+      const auto channel = [&](std::size_t k) {
+        return static_cast<unsigned char>(bytes[at + kKey.size() + k]) / 255.0;
+      };
+      object_ = decode_srgb(Vec3d(channel(0), channel(1), channel(2)));
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      checkpoint(i);
+      const std::uint32_t word = word_of(i);
+      if (word != 0) exist_ = true;
+      if (word != 0 && !object_ && !(word & kMark)) {
+        exist_ = false;
+        return;
+      }
+    }
+  }
+
+  bool exist() const { return exist_; }
+
+  // Returns the colour of a facet. Facets without a colour are white. Codes are those of sRGB. REQUIRES:
+  // exist().
+  Vec3d of(std::size_t facet) const {
+    const std::uint32_t word = word_of(facet);
+    const auto channel = [&](int shift) { return (word >> shift & 31) / 31.0; };
+    if (object_) return word & kMark ? *object_ : decode_srgb(Vec3d(channel(0), channel(5), channel(10)));
+    return word & kMark ? decode_srgb(Vec3d(channel(10), channel(5), channel(0))) : Vec3d(1);
+  }
+
+ private:
+  static constexpr std::uint32_t kMark = 1 << 15;
+
+  std::uint32_t word_of(std::size_t facet) const {
+    return little_endian(bytes_.data() + kHeader + (facet + 1) * kFacet - 2, 2);
+  }
+
+  std::string_view bytes_;
+  std::optional<Vec3d> object_;  // colour of the object in a file of Magics
+  bool exist_ = false;
+};
+
 class Builder {
  public:
-  explicit Builder(const MeshLimits& limits) : limits_(limits) {}
+  Builder(const MeshLimits& limits, bool with_colors)
+      : limits_(limits), vertices_(false, false, with_colors) {}
 
   void reserve(std::size_t triangles) { triangles_.reserve(triangles); }
-  void add(const std::array<Vec3d, 3>& corners) {
+  void add(const std::array<Vec3d, 3>& corners, const Vec3d& color = {}) {
     check_triangles(triangles_.size() + 1, limits_);
     auto& triangle = triangles_.emplace_back();
-    for (std::size_t k = 0; k < 3; ++k) triangle[k] = vertices_.add({corners[k], {}, {}});
+    for (std::size_t k = 0; k < 3; ++k) triangle[k] = vertices_.add({corners[k], {}, {}, color});
     check_vertices(vertices_.size(), limits_);
   }
   TriangleMesh take() {
@@ -39,14 +95,15 @@ class Builder {
 
  private:
   const MeshLimits& limits_;
-  VertexList vertices_{false, false};
+  VertexList vertices_;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
 };
 
 TriangleMesh read_binary(std::string_view bytes, const MeshLimits& limits) {
   const std::size_t count = binary_stl_triangles(bytes);
   check_triangles(count, limits);
-  Builder builder(limits);
+  const FacetColors colors(bytes, count);
+  Builder builder(limits, colors.exist());
   builder.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     const char* facet = bytes.data() + kHeader + i * kFacet + kCorner;  // skips the normal
@@ -60,7 +117,7 @@ TriangleMesh read_binary(std::string_view bytes, const MeshLimits& limits) {
         fail_at("facet " + std::to_string(i) + " at byte " + std::to_string(kHeader + i * kFacet),
                 position_problem(corners[k]));
     }
-    builder.add(corners);
+    builder.add(corners, colors.exist() ? colors.of(i) : Vec3d());
   }
   TriangleMesh mesh = builder.take();
   if (const std::size_t end = kHeader + count * kFacet; end < bytes.size())
@@ -98,7 +155,7 @@ std::array<Vec3d, 3> read_facet(TextReader& text) {
 // same line.
 TriangleMesh read_ascii(std::string_view bytes, const MeshLimits& limits) {
   TextReader text(bytes);
-  Builder builder(limits);
+  Builder builder(limits, false);
   bool inside = false;
   for (std::string_view word = text.word(); !word.empty(); word = text.word()) {
     if (is_keyword(word, inside ? "endsolid" : "solid")) {

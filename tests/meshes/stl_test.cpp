@@ -75,5 +75,53 @@ TEST(Stl, SkipsBytesAfterLastTriangle) {
   EXPECT_EQ(problem(binary_stl_of(cube()) + std::string(4097, ' ')).find("accepted"), std::string::npos);
 }
 
+// Returns the colours of the first corners of the facets of a cube whose facets store these words,
+// repeatedly.
+std::vector<Vec3d> facet_colors(const std::vector<std::uint16_t>& words, const std::string& title = "") {
+  std::string bytes = binary_stl_of(cube(), title);
+  for (std::size_t i = 0; i < 12; ++i) {
+    const std::uint16_t word = words[i % words.size()];
+    bytes[84 + 50 * i + 48] = static_cast<char>(word & 255);
+    bytes[84 + 50 * i + 49] = static_cast<char>(word >> 8);
+  }
+  const TriangleMesh mesh = read_mesh(bytes);
+  EXPECT_EQ(corners_of(mesh), corners_of(cube()));
+  std::vector<Vec3d> colors;
+  for (std::size_t i = 0; i < 12 && !mesh.colors.empty(); ++i) {
+    for (const std::uint32_t vertex : mesh.triangles[i])
+      EXPECT_EQ(mesh.colors[vertex], mesh.colors[mesh.triangles[i][0]]);
+    colors.push_back(mesh.colors[mesh.triangles[i][0]]);
+  }
+  return colors;
+}
+
+TEST(Stl, ReadsColoursOfVisCam) {
+  const std::vector<Vec3d> colors = facet_colors({0x8000 | 31 << 10, 0x8000 | 31 << 5, 0x8000 | 31, 0});
+  ASSERT_EQ(colors.size(), 12u);
+  EXPECT_EQ(colors[0], Vec3d(1, 0, 0));
+  EXPECT_EQ(colors[5], Vec3d(0, 1, 0));
+  EXPECT_EQ(colors[10], Vec3d(0, 0, 1));
+  EXPECT_EQ(colors[11], Vec3d(1));
+  // Code 16 / 31 of sRGB.
+  EXPECT_NEAR(facet_colors({0x8000 | 16}).at(0).z, 0.229275, 1e-6);
+}
+
+TEST(Stl, ReadsColoursOfMagics) {
+  const std::string title = std::string("made by a program COLOR=\xff\x00\xff\xff,MATERIAL=", 38);
+  const std::vector<Vec3d> colors = facet_colors({31, 31 << 5, 31 << 10, 0x8000 | 31}, title);
+  ASSERT_EQ(colors.size(), 12u);
+  EXPECT_EQ(colors[0], Vec3d(1, 0, 0));
+  EXPECT_EQ(colors[1], Vec3d(0, 1, 0));
+  EXPECT_EQ(colors[2], Vec3d(0, 0, 1));
+  EXPECT_EQ(colors[3], Vec3d(1, 0, 1));
+}
+
+TEST(Stl, IgnoresOtherBytesAfterFacets) {
+  EXPECT_TRUE(facet_colors({0}).empty());
+  EXPECT_TRUE(facet_colors({0}, "COLOR=abcd").empty());
+  EXPECT_TRUE(facet_colors({0x8000 | 31, 7}).empty());
+  EXPECT_TRUE(facet_colors({31}, std::string(74, ' ') + "COLOR=").empty());
+}
+
 }  // namespace
 }  // namespace orrery::test
