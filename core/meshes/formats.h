@@ -19,6 +19,10 @@ MeshModel read_obj(std::string_view bytes, const MeshLimits& limits, const ReadN
 TriangleMesh read_ply(std::string_view bytes, const MeshLimits& limits);
 TriangleMesh read_stl(std::string_view bytes, const MeshLimits& limits);
 MeshModel read_gltf(std::string_view bytes, const MeshLimits& limits, const ReadNearby& nearby);
+MeshModel read_three_mf(std::string_view bytes, const MeshLimits& limits);
+
+// Returns true for a ZIP archive with a model part of 3MF. Throws InputError if an archive cannot be read.
+bool is_three_mf(std::string_view bytes);
 
 // Returns the number of triangles of a binary STL, or 0 for any other file. The file must have room for the
 // count in the header, and may have a few bytes after the last triangle. A text file has no room, because its

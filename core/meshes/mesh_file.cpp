@@ -106,6 +106,7 @@ MeshModel read_as(MeshFormat format, std::string_view bytes, const MeshLimits& l
     case MeshFormat::ply: return {read_ply(bytes, limits), {}, {}};
     case MeshFormat::stl: return {read_stl(bytes, limits), {}, {}};
     case MeshFormat::gltf: return read_gltf(bytes, limits, nearby);
+    case MeshFormat::three_mf: return read_three_mf(bytes, limits);
   }
   return {};
 }
@@ -113,13 +114,14 @@ MeshModel read_as(MeshFormat format, std::string_view bytes, const MeshLimits& l
 }  // namespace
 
 std::string_view name_of(MeshFormat format) {
-  constexpr std::array<std::string_view, 4> kNames{"obj", "ply", "stl", "gltf"};
+  constexpr std::array<std::string_view, 5> kNames{"obj", "ply", "stl", "gltf", "3mf"};
   return kNames[static_cast<std::size_t>(format)];
 }
 
 MeshFormat mesh_format(std::string_view bytes) {
   if (bytes.starts_with("glTF")) return MeshFormat::gltf;
   if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return MeshFormat::ply;
+  if (is_three_mf(bytes)) return MeshFormat::three_mf;
   if (binary_stl_triangles(bytes) > 0) return MeshFormat::stl;
   if (is_utf16(bytes)) return mesh_format(utf8_of_utf16(bytes));
   const std::string_view word = first_word(without_byte_order_mark(bytes));
@@ -127,7 +129,7 @@ MeshFormat mesh_format(std::string_view bytes) {
   if (is_keyword(word, "solid")) return MeshFormat::stl;
   if (std::find(std::begin(kObjWords), std::end(kObjWords), word) != std::end(kObjWords))
     return MeshFormat::obj;
-  throw InputError("", "must be an OBJ, PLY, STL (84 + 50 n bytes if binary) or glTF file (got " +
+  throw InputError("", "must be an OBJ, PLY, STL (84 + 50 n bytes if binary), 3MF or glTF file (got " +
                            std::to_string(bytes.size()) + " bytes that begin with " + excerpt(bytes) + ")");
 }
 

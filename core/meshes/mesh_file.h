@@ -48,14 +48,14 @@ struct MeshLimits {
 // InputError (pointer "") if there is no such file or it must not be read.
 using ReadNearby = std::function<std::string(const std::string& name)>;
 
-enum class MeshFormat { obj, ply, stl, gltf };
-std::string_view name_of(MeshFormat format);  // "obj", "ply", "stl" or "gltf"
+enum class MeshFormat { obj, ply, stl, gltf, three_mf };
+std::string_view name_of(MeshFormat format);  // "obj", "ply", "stl", "gltf" or "3mf"
 
-// Detects the format from the content: glTF and PLY by their first bytes, binary STL by its size, ASCII STL
-// and OBJ by their first word. Throws InputError if no format matches. Throws Cancelled.
+// Detects the format from the content: glTF and PLY by their first bytes, 3MF by its archive, binary STL by
+// its size, ASCII STL and OBJ by their first word. Throws InputError if no format matches. Throws Cancelled.
 MeshFormat mesh_format(std::string_view bytes);
 
-// Reads an OBJ, PLY (ASCII, binary of either byte order), STL (ASCII, binary) or glTF 2.0 file (.glb, or
+// Reads an OBJ, PLY (ASCII, binary of either byte order), STL (ASCII, binary), 3MF or glTF 2.0 file (.glb, or
 // .gltf). Detects the format from the content. Text may be UTF-8 or, with a byte order mark, UTF-16. Buffers
 // of glTF files that are neither in the file nor in data: URIs are read by `nearby`; without it, they are an
 // error. Material libraries and images are read by `nearby`, too; without it, they give notes. The same bytes

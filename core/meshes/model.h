@@ -62,6 +62,7 @@ struct MeshModel {
   TriangleMesh mesh;
   std::vector<ModelMaterial> materials;
   std::vector<ModelImage> images;
+  std::string unit = {};  // name of the unit of lengths in the file, or empty if the format has none
 };
 using MeshModelPtr = std::shared_ptr<const MeshModel>;
 

@@ -82,11 +82,11 @@ TriangleMesh read_elsewhere(Params& p, const char* key, const std::string& name,
 }
 
 std::string file_name(Params& p, const char* fallback = nullptr) {
-  return p.text("file", "OBJ, PLY, STL or glTF file in or below the scene's folder; command line only.",
+  return p.text("file", "OBJ, PLY, STL, 3MF or glTF file in or below the scene's folder; command line only.",
                 kMostNameLength, fallback);
 }
 std::string asset_name(Params& p, const char* fallback = nullptr) {
-  return p.text("asset", "SHA-256 of an uploaded OBJ, PLY, STL or glTF file.", 64, fallback);
+  return p.text("asset", "SHA-256 of an uploaded OBJ, PLY, STL, 3MF or glTF file.", 64, fallback);
 }
 std::optional<int> read_part(Params& p) {
   const std::int64_t part = p.integer("part",

@@ -59,7 +59,7 @@ constexpr std::array<ViewParameter, 5> kParameters{
       "Direction from the model to the camera: front, right, back, left, top, bottom, iso, or azimuth and "
       "elevation in degrees.",
       "30,20"},
-     {"up", "AXIS", "Axis of the file that is up; auto: z in STL files, y in others.", "auto", kAxes},
+     {"up", "AXIS", "Axis of the file that is up; auto: z in STL and 3MF files, y in others.", "auto", kAxes},
      {"projection", "NAME", "Projection of the camera.", "perspective", kProjections},
      {"ground", "NAME", "Plane below the model; shadow: it shows nothing but shadows.", "none", kGrounds},
      {"fit", "NAME", "Content of the image: the model as seen, or the model from every azimuth.", "view",
@@ -161,7 +161,10 @@ Vec3d key_direction(const StudioAxes& axes, const ViewDirection& from) {
 
 }  // namespace
 
-Vec3d usual_up(MeshFormat format) { return format == MeshFormat::stl ? Vec3d(0, 0, 1) : Vec3d(0, 1, 0); }
+Vec3d usual_up(MeshFormat format) {
+  const bool is_z_up = format == MeshFormat::stl || format == MeshFormat::three_mf;
+  return is_z_up ? Vec3d(0, 0, 1) : Vec3d(0, 1, 0);
+}
 
 std::span<const ViewParameter> view_parameters() { return kParameters; }
 

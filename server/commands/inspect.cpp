@@ -42,6 +42,8 @@ nlohmann::ordered_json inspection_json(const ModelFile& model, const MeshInspect
           {"triangles_without_area", found.triangles_without_area},
           {"min", numbers(found.bounds.lo)},
           {"max", numbers(found.bounds.hi)},
+          {"unit",
+           model.model->unit.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(model.model->unit)},
           {"watertight", found.watertight},
           {"area", found.area},
           {"volume", found.watertight ? nlohmann::ordered_json(found.volume) : nullptr},
@@ -76,7 +78,8 @@ std::string inspection_text(const ModelFile& model, const MeshInspection& found)
                               (mesh.colors.empty() ? "" : ", with colours"));
   if (const std::size_t count = model.model->materials.size(); count > 0)
     text += row("materials", grouped(count) + ", with " + grouped(model.model->images.size()) + " images");
-  text += row("size", number_text(size.x) + " x " + number_text(size.y) + " x " + number_text(size.z));
+  text += row("size", number_text(size.x) + " x " + number_text(size.y) + " x " + number_text(size.z) +
+                          (model.model->unit.empty() ? "" : " " + model.model->unit));
   text += row("box", text_of(found.bounds.lo) + " to " + text_of(found.bounds.hi));
   text += row("watertight", found.watertight ? "yes, volume " + number_text(found.volume) : "no");
   text += row("area", number_text(found.area));
@@ -97,7 +100,7 @@ Command add_inspect(CLI::App& root) {
   const auto options = std::make_shared<InspectOptions>();
   CLI::App* app = root.add_subcommand("inspect", "Print size, triangles and contents of a model");
   app->footer(kInspectExamples);
-  app->add_option("MODEL", options->model, "OBJ, PLY, STL or glTF file, or - for standard input")
+  app->add_option("MODEL", options->model, "OBJ, PLY, STL, 3MF or glTF file, or - for standard input")
       ->required()
       ->group("Arguments");
   app->add_flag("--json", options->json, "Print JSON")->group("Output");

@@ -81,7 +81,7 @@ void add_render_flags(CLI::App& app, RenderFlags& flags, CommonOptions common) {
 }
 
 void add_model_flags(CLI::App& app, RenderFlags& flags) {
-  app.add_option("MODEL", flags.scene, "OBJ, PLY, STL or glTF file, or - for standard input")
+  app.add_option("MODEL", flags.scene, "OBJ, PLY, STL, 3MF or glTF file, or - for standard input")
       ->required()
       ->group("Arguments");
   add_image_flags(app, flags, kCommonOptions, std::string(kListed));

@@ -17,6 +17,7 @@ FormatNames names_of(MeshFormat format, const std::string& bytes) {
     case MeshFormat::obj: return {"obj", "model/obj"};
     case MeshFormat::stl: return {"stl", "model/stl"};
     case MeshFormat::ply: return {"ply", "application/octet-stream"};
+    case MeshFormat::three_mf: return {"3mf", "model/3mf"};
     case MeshFormat::gltf:
       return {"gltf", bytes.starts_with("glTF") ? "model/gltf-binary" : "model/gltf+json"};
   }
@@ -100,7 +101,7 @@ void add_assets_routes(Router& router, App& app) {
       .describe(
           {.id = "keep_asset",
            .summary =
-               "Stores a mesh (OBJ, PLY, STL, glTF) or an image (EXR, HDR, PNG, JPEG) under its SHA-256",
+               "Stores a mesh (OBJ, PLY, STL, 3MF, glTF) or an image (EXR, HDR, PNG, JPEG) under its SHA-256",
            .parameters = {kAssetId},
            .body = {"*/*"},
            .answers = {{200, "The asset was already stored", {"Location", "ETag"}, {asset}},

@@ -32,7 +32,7 @@ ViewQuery read_view_query(const Request& request) {
 
 const AssetStore::Asset::Mesh& mesh_of(const AssetStore::Asset& asset) {
   if (const auto* const mesh = std::get_if<AssetStore::Asset::Mesh>(&asset.content)) return *mesh;
-  throw InputError("", "must be an OBJ, PLY, STL or glTF file (got an image)");
+  throw InputError("", "must be an OBJ, PLY, STL, 3MF or glTF file (got an image)");
 }
 
 // Orders the image of a stored model.
@@ -116,7 +116,7 @@ void add_view_routes(Router& router, App& app) {
       .add("POST", "/v1/view", Scope::write, LogLevel::info, body,
            [&app](Request& request) { return post_view(app, request); })
       .describe({.id = "view_model",
-                 .summary = "Renders a model (OBJ, PLY, STL, glTF) without a scene",
+                 .summary = "Renders a model (OBJ, PLY, STL, 3MF, glTF) without a scene",
                  .description = "Stores the model as an asset, frames it exactly, lights it and renders it "
                                 "until the error is small",
                  .parameters = described_parameters(),

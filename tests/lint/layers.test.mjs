@@ -39,6 +39,7 @@ const kLibraries = [
   { name: "httplib", header: /^httplib\.h$/, rooms: /^(server\/http|tests)\// },
   { name: "libpng", header: /^png\.h$/, rooms: /^core\/image\/encode\// },
   { name: "turbojpeg", header: /^(turbojpeg|jpeglib)\.h$/, rooms: /^core\/image\/encode\// },
+  { name: "pugixml", header: /^pugixml\.hpp$/, rooms: /^core\/meshes\// },
   { name: "libzip", header: /^zip\.h$/, rooms: /^core\/meshes\// },
   { name: "OpenImageIO", header: /^OpenImageIO\//, rooms: /^core\/image\/decode\/decoder\// },
   { name: "OpenEXR", header: /^(OpenEXR\/|Imath\/|Imf|Imath|openexr)/, rooms: /^core\/image\/encode\// },

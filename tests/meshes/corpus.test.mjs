@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// Reads the OBJ, PLY, STL and glTF files of Debian's assimp-testmodels, which were not made for this project, and
+// Reads the OBJ, PLY, STL, 3MF and glTF files of Debian's assimp-testmodels, which were not made for this project, and
 // compares bounds and triangles with assimp (assimp-utils). For glTF files it computes them itself, because
 // `assimp info` combines nested transforms in the wrong order and counts shared meshes once. A file must be read,
 // or rejected for the cause that is listed here. Exits with 77 if the packages are not installed.
@@ -54,7 +54,7 @@ const kRejected = new Map([
   ["glTF/BoxTextured-glTF-Binary/BoxTextured.glb", "must be GLB version 2"],
 ]);
 
-const kFormats = /\.(obj|ply|stl|gltf|glb)$/i;
+const kFormats = /\.(obj|ply|stl|3mf|gltf|glb)$/i;
 
 function* filesBelow(folder) {
   for (const entry of readdirSync(folder, { withFileTypes: true })) {

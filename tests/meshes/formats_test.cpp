@@ -22,7 +22,8 @@ std::vector<File> cubes() {
           {"stl ascii", MeshFormat::stl, ascii_stl_of(mesh)},
           {"stl binary", MeshFormat::stl, binary_stl_of(mesh)},
           {"gltf", MeshFormat::gltf, gltf_of(mesh).gltf(kOneMesh)},
-          {"glb", MeshFormat::gltf, gltf_of(mesh).glb(kOneMesh)}};
+          {"glb", MeshFormat::gltf, gltf_of(mesh).glb(kOneMesh)},
+          {"3mf", MeshFormat::three_mf, three_mf_of(mesh)}};
 }
 
 TEST(MeshFile, ReadsSameCubeFromEveryFormat) {

@@ -260,4 +260,32 @@ class Zip {
   std::uint16_t count_ = 0;
 };
 
+// Returns the element "mesh" of 3MF. `more`: attributes by triangle.
+inline std::string three_mf_mesh(const TriangleMesh& mesh, const std::vector<std::string>& more = {}) {
+  std::string out = "<mesh><vertices>";
+  for (const Vec3d& p : mesh.positions)
+    out += "<vertex x=\"" + number(p.x) + "\" y=\"" + number(p.y) + "\" z=\"" + number(p.z) + "\"/>";
+  out += "</vertices><triangles>";
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& [a, b, c] = mesh.triangles[i];
+    out += "<triangle v1=\"" + std::to_string(a) + "\" v2=\"" + std::to_string(b) + "\" v3=\"" +
+           std::to_string(c) + "\" " + (i < more.size() ? more[i] : "") + "/>";
+  }
+  return out + "</triangles></mesh>";
+}
+// Returns a model part of 3MF.
+inline std::string three_mf_model(const std::string& resources, const std::string& items,
+                                  const std::string& attributes = "") {
+  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+         "<model xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" " +
+         attributes + "><resources>" + resources + "</resources><build>" + items + "</build></model>";
+}
+inline std::string three_mf_of(const std::string& resources, const std::string& items,
+                               const std::string& attributes = "") {
+  return Zip().add("3D/3dmodel.model", three_mf_model(resources, items, attributes)).bytes();
+}
+inline std::string three_mf_of(const TriangleMesh& mesh) {
+  return three_mf_of("<object id=\"1\">" + three_mf_mesh(mesh) + "</object>", "<item objectid=\"1\"/>");
+}
+
 }  // namespace orrery::test
