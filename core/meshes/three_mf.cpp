@@ -122,7 +122,7 @@ class PackageReader {
       if (object == objects.end())
         throw InputError("", excerpt(at.part, 80) + ": objectid must be the id of an object (got " +
                                  std::to_string(at.object) + ")");
-      add(object->second, at.world_from_object);
+      for (const ThreeMfMesh& mesh : object->second.meshes) add(mesh, at.world_from_object);
       push(object->second.components, at);
     }
   }
@@ -140,23 +140,23 @@ class PackageReader {
                         compose(parent.world_from_object, component->parent_from_object)});
   }
 
-  void add(const ThreeMfObject& object, const Affined& world_from_object) {
+  void add(const ThreeMfMesh& mesh, const Affined& world_from_object) {
     const std::size_t first_vertex = mesh_.positions.size(), first_triangle = mesh_.triangles.size();
-    check_vertices(first_vertex + object.positions.size(), limits_);
-    check_triangles(first_triangle + object.triangles.size(), limits_);
-    for (const Vec3d& position : object.positions) {
+    check_vertices(first_vertex + mesh.positions.size(), limits_);
+    check_triangles(first_triangle + mesh.triangles.size(), limits_);
+    for (const Vec3d& position : mesh.positions) {
       checkpoint(mesh_.positions.size());
       const Vec3d placed = world_from_object.point(position);
       if (!is_position(placed)) throw InputError("", "placed object: " + position_problem(placed));
       mesh_.positions.push_back(placed);
     }
-    if (!object.colors.empty()) mesh_.colors.resize(first_vertex, Vec3d(1));
-    for (const std::uint32_t color : object.colors) mesh_.colors.push_back(contents_.colors[color]);
-    for (const MeshPart& each : object.parts)
+    if (!mesh.colors.empty()) mesh_.colors.resize(first_vertex, Vec3d(1));
+    for (const std::uint32_t color : mesh.colors) mesh_.colors.push_back(contents_.colors[color]);
+    for (const MeshPart& each : mesh.parts)
       start_part(first_triangle + each.first_triangle, each.material, mesh_.parts);
     const bool is_mirrored = scaled_determinant(world_from_object) < 0;
     const auto offset = static_cast<std::uint32_t>(first_vertex);
-    for (const auto& [a, b, c] : object.triangles) {
+    for (const auto& [a, b, c] : mesh.triangles) {
       checkpoint(mesh_.triangles.size());
       mesh_.triangles.push_back({a + offset, (is_mirrored ? c : b) + offset, (is_mirrored ? b : c) + offset});
     }

@@ -67,12 +67,13 @@ class PartReader {
       read_other(resource);
   }
 
-  // Notes an element that is not modelled. Triangles may refer to it.
+  // Notes an element that is not modelled, except metadata. Triangles may refer to it.
   void read_other(const pugi::xml_node& element) {
     note_unmodelled(element);
     if (const auto id = file_.integer(element, "id")) groups_[*id] = {};
   }
   void note_unmodelled(const pugi::xml_node& element) {
+    if (local_name(element.name()).starts_with("metadata")) return;
     const std::string name = excerpt(local_name(element.name()));
     if (contents_.unmodelled.size() < kMaxUnmodelled || contents_.unmodelled.contains(name))
       ++contents_.unmodelled[name];
@@ -130,14 +131,17 @@ class PartReader {
     const PropertyReference fallback{file_.integer(element, "pid"), file_.integer(element, "pindex")};
     for_each_element(element, "", [&](const pugi::xml_node& child) {
       const std::string_view name = local_name(child.name());
-      if (name == "mesh")
-        read_mesh(child, fallback, object);
-      else if (name == "components")
+      if (name == "mesh") {  // assimp writes several meshes in one object
+        ThreeMfMesh mesh;
+        read_mesh(child, fallback, mesh);
+        if (!mesh.triangles.empty()) object.meshes.push_back(std::move(mesh));
+      } else if (name == "components") {
         for_each_element(child, "component", [&](const pugi::xml_node& component) {
           object.components.push_back(read_component(component));
         });
-      else if (name != "metadatagroup" && name != "metadata")
+      } else {
         note_unmodelled(child);
+      }
     });
   }
 
@@ -161,50 +165,50 @@ class PartReader {
     return {{m[0], m[1], m[2]}, {m[3], m[4], m[5]}, {m[6], m[7], m[8]}, {m[9], m[10], m[11]}};
   }
 
-  void read_mesh(const pugi::xml_node& element, const PropertyReference& fallback, ThreeMfObject& object) {
+  void read_mesh(const pugi::xml_node& element, const PropertyReference& fallback, ThreeMfMesh& mesh) {
     std::vector<std::array<std::uint32_t, 3>> colors;  // by triangle; empty if no triangle has one
     for_each_element(element, "", [&](const pugi::xml_node& child) {
       const std::string_view name = local_name(child.name());
       if (name == "vertices")
-        for_each_element(child, "vertex", [&](const pugi::xml_node& vertex) { read_vertex(vertex, object); });
+        for_each_element(child, "vertex", [&](const pugi::xml_node& vertex) { read_vertex(vertex, mesh); });
       else if (name == "triangles")
         for_each_element(child, "triangle", [&](const pugi::xml_node& triangle) {
           const CornerProperties properties = properties_of(triangle, fallback);
           if (properties.colors != std::array<std::uint32_t, 3>{} && colors.empty())
-            colors.resize(object.triangles.size());
-          start_part(object.triangles.size(), properties.material, object.parts);
-          read_triangle(triangle, object);
+            colors.resize(mesh.triangles.size());
+          start_part(mesh.triangles.size(), properties.material, mesh.parts);
+          read_triangle(triangle, mesh);
           if (!colors.empty() || properties.colors != std::array<std::uint32_t, 3>{})
             colors.push_back(properties.colors);
         });
       else
         note_unmodelled(child);
     });
-    if (!colors.empty()) split_vertices(colors, object);
+    if (!colors.empty()) split_vertices(colors, mesh);
   }
 
-  void read_vertex(const pugi::xml_node& element, ThreeMfObject& object) {
+  void read_vertex(const pugi::xml_node& element, ThreeMfMesh& mesh) {
     check_vertices(++contents_.vertices, limits_);
     const Vec3d position(file_.needed_number(element, "x"), file_.needed_number(element, "y"),
                          file_.needed_number(element, "z"));
     if (!is_position(position)) file_.fail(element, position_problem(position));
-    object.positions.push_back(position);
+    mesh.positions.push_back(position);
   }
 
-  void read_triangle(const pugi::xml_node& element, ThreeMfObject& object) {
+  void read_triangle(const pugi::xml_node& element, ThreeMfMesh& mesh) {
     check_triangles(++contents_.triangles, limits_);
-    auto& triangle = object.triangles.emplace_back();
+    auto& triangle = mesh.triangles.emplace_back();
     constexpr std::string_view kCorners[] = {"v1", "v2", "v3"};
     for (std::size_t k = 0; k < 3; ++k) {
       triangle[k] = file_.needed_integer(element, kCorners[k]);
-      if (triangle[k] >= object.positions.size())
+      if (triangle[k] >= mesh.positions.size())
         file_.fail(element, std::string(kCorners[k]) + " must be >= 0 and < " +
-                                std::to_string(object.positions.size()) + " (got " +
+                                std::to_string(mesh.positions.size()) + " (got " +
                                 std::to_string(triangle[k]) + ")");
     }
   }
 
-  // Returns the properties of a triangle, or those of its object.
+  // Returns the properties of a triangle, or those of its mesh.
   CornerProperties properties_of(const pugi::xml_node& triangle, const PropertyReference& fallback) const {
     const auto first = file_.integer(triangle, "p1");
     auto id = fallback.group;
@@ -229,13 +233,13 @@ class PartReader {
   }
 
   // Gives each vertex one colour: adds a vertex for each further colour that triangles use there.
-  void split_vertices(const std::vector<std::array<std::uint32_t, 3>>& colors, ThreeMfObject& object) const {
+  void split_vertices(const std::vector<std::array<std::uint32_t, 3>>& colors, ThreeMfMesh& mesh) const {
     IndexTable table;
     std::vector<Vec3d> positions;
     std::vector<std::uint64_t> keys;
-    for (std::size_t t = 0; t < object.triangles.size(); ++t)
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
       for (std::size_t k = 0; k < 3; ++k) {
-        std::uint32_t& vertex = object.triangles[t][k];
+        std::uint32_t& vertex = mesh.triangles[t][k];
         const std::uint64_t key = vertex | std::uint64_t{colors[t][k]} << 32;
         const std::uint32_t hash = table.hash(std::span(&key, 1));
         const std::uint32_t entry =
@@ -243,12 +247,12 @@ class PartReader {
         if (entry == keys.size()) {
           check_vertices(keys.size() + 1, limits_);
           keys.push_back(key);
-          positions.push_back(object.positions[vertex]);
-          object.colors.push_back(colors[t][k]);
+          positions.push_back(mesh.positions[vertex]);
+          mesh.colors.push_back(colors[t][k]);
         }
         vertex = entry;
       }
-    object.positions = std::move(positions);
+    mesh.positions = std::move(positions);
   }
 
   const XmlFile& file_;

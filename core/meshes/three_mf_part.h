@@ -15,12 +15,16 @@ struct ThreeMfComponent {
   Affined parent_from_object;
 };
 
-struct ThreeMfObject {
+struct ThreeMfMesh {
   std::vector<Vec3d> positions;
   std::vector<std::uint32_t> colors;  // by position: index into ThreeMfContents::colors; empty if all are 0
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<MeshPart>
       parts;  // by ascending triangle; materials are indices into ThreeMfContents::materials
+};
+
+struct ThreeMfObject {
+  std::vector<ThreeMfMesh> meshes;  // with at least one triangle each
   std::vector<ThreeMfComponent> components;
 };
 

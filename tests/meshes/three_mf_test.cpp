@@ -78,6 +78,17 @@ TEST(ThreeMf, ReadsColoursOfCorners) {
             (std::vector<Vec3d>{red, blue, red, blue, blue, blue, white, white, white, white, white, white}));
 }
 
+// assimp writes such objects. Each mesh numbers its own vertices.
+TEST(ThreeMf, ReadsSeveralMeshesOfAnObject) {
+  const std::string colors = "<colorgroup id=\"3\"><color color=\"#FF0000\"/></colorgroup>";
+  const std::string meshes = three_mf_mesh(two_triangles(), {"pid=\"3\" p1=\"0\""}) + three_mf_mesh(cube());
+  const TriangleMesh mesh = read_mesh(three_mf_of(colors + object(1, meshes), kItem));
+  EXPECT_EQ(mesh.triangles.size(), 14u);
+  EXPECT_EQ(mesh.colors.size(), mesh.positions.size());
+  EXPECT_EQ(corners_of(mesh)[2], corners_of(cube())[0]);
+  EXPECT_EQ(corners_of(mesh)[13], corners_of(cube())[11]);
+}
+
 TEST(ThreeMf, FindsPartsOfThePackage) {
   const std::string outer = three_mf_model(
       object(5, "<components>" + component(1, "p:path=\"/3D/Parts/a.MODEL\"") + "</components>"),
