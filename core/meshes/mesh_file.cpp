@@ -93,9 +93,15 @@ bool is_utf16(std::string_view bytes) {
   return bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff");
 }
 
+// Returns the notes for an error message: the first ones, up to a length.
 std::string joined(const std::vector<std::string>& notes) {
+  constexpr std::size_t kMaxText = 250;
   std::string text;
-  for (const std::string& note : notes) text += "; " + note;
+  for (std::size_t i = 0; i < notes.size(); ++i) {
+    if (text.size() + notes[i].size() > kMaxText)
+      return text + "; " + grouped(notes.size() - i) + " more notes";
+    text += "; " + notes[i];
+  }
   return text;
 }
 

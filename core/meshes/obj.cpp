@@ -187,6 +187,10 @@ class ObjReader {
 
   MeshModel build() {
     MtlMaterials found;
+    if (triangles_.empty()) {  // no material is in use
+      used_.clear();
+      parts_.clear();
+    }
     if (!used_.empty()) found = read_mtl({libraries_.begin(), libraries_.end()}, used_, nearby_);
     for (MeshPart& part : parts_)
       if (part.material >= 0) part.material = found.indices[static_cast<std::size_t>(part.material)];
