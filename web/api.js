@@ -37,7 +37,8 @@ export function isAbort(error) {
 // with status 0.
 export const toApiError = (error) => (isAbort(error) ? error : connectionError(error.message));
 
-async function problemOf(response) {
+// Resolves to the error that the response of a failed request describes.
+export async function problemOf(response) {
   const fields = { status: response.status, title: response.statusText || `Status ${response.status}` };
   try {
     Object.assign(fields, JSON.parse(await response.text()));

@@ -8,6 +8,7 @@ import { wakeAll, withRetries } from "./backoff.js";
 import { OrbitCamera } from "./camera.js";
 import { attachControls, step, ZOOM_STEP } from "./controls.js";
 import { Editor } from "./editor.js";
+import { attachFiles } from "./files.js";
 import { Gallery } from "./gallery.js";
 import { attachHint } from "./hint.js";
 import { attachHistory } from "./history.js";
@@ -34,7 +35,7 @@ const reducedMotion = matchMedia("(prefers-reduced-motion: reduce)");
 const store = new Store({
   ...parseHash(location.hash).settings,
   catalog: null, // sample scenes and techniques of the service, null until loaded
-  limits: { side: 4096, pixels: 2 ** 24, samples: 4096, frames: 3600 },
+  limits: { side: 4096, pixels: 2 ** 24, samples: 4096, frames: 3600, fileBytes: 2 ** 26 },
   scene: null, // scene on the stage, null while a scene is being opened
   // Kind of picture on the stage: "preview", "stream", "refining" or "still"; "" while a picture is pending.
   shows: "",
@@ -146,13 +147,16 @@ function pickSample(name) {
   showStage();
 }
 
-async function applyText(text) {
-  const posted = await opener.post(text);
-  if (!posted) return;
+// Posts a scene text and shows the scene. Resolves to false if another scene was opened meanwhile. Throws
+// ApiError.
+async function applyText(text, title) {
+  const posted = await opener.post(text, title);
+  if (!posted) return false;
   address.save();
   opener.show(posted, DEFAULT_VIEW);
   address.push();
   showStage();
+  return true;
 }
 
 // Scrolls the stage into view, because a narrow page may have scrolled it away.
@@ -265,6 +269,11 @@ const editor = new Editor(
   applyText,
   postScene,
 );
+attachFiles(store, {
+  aspect: () => view.box.width / view.box.height,
+  show: applyText,
+  play: () => !reducedMotion.matches && setPlaying(true),
+});
 attachControls(stage, moves);
 attachHistory($("show-history"), $("history"), store, currentPicture);
 attachHint($("hint"));
@@ -300,8 +309,8 @@ reducedMotion.addEventListener("change", () => (camera.damped = !reducedMotion.m
 
 async function loadCatalog() {
   const [catalog, published] = await Promise.all([getJson("v1/catalog"), getJson("v1/limits")]);
-  const { image_side: side, image_pixels: pixels, samples, orbit_frames: frames } = published;
-  return { catalog, limits: { side, pixels, samples, frames } };
+  const { image_side: side, image_pixels: pixels, samples, orbit_frames: frames, asset_bytes: fileBytes } = published;
+  return { catalog, limits: { side, pixels, samples, frames, fileBytes } };
 }
 
 async function start() {

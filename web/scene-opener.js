@@ -35,11 +35,11 @@ export class SceneOpener {
     }
   }
 
-  // Posts a scene text from the user. Resolves to the scene, or to null if another scene was opened
-  // meanwhile. Throws ApiError.
-  async post(text) {
+  // Posts a scene text from the user, see SceneLibrary.post(). Resolves to the scene, or to null if another
+  // scene was opened meanwhile. Throws ApiError.
+  async post(text, title) {
     const turn = this.#turn;
-    const posted = await this.#library.post(text);
+    const posted = await this.#library.post(text, title);
     return turn === this.#turn ? posted : null;
   }
 
@@ -55,7 +55,7 @@ export class SceneOpener {
   // Posts the scene again after the service has evicted it.
   async repost() {
     const { scene } = this.#store.get();
-    const posted = await this.post(scene.text);
+    const posted = await this.post(scene.text, scene.title);
     if (posted && posted.id !== scene.id) this.#store.set({ scene: { ...scene, id: posted.id } });
   }
 }

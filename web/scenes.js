@@ -23,10 +23,14 @@ export const thumbnailOf = ({ name }) => `scenes/thumbnails/${name}.webp`;
 export class SceneLibrary {
   samples = []; // {name, title, description, href}
   #texts = new Map(); // name or id -> JSON text
+  #titles = new Map(); // id -> title that the page has given to the scene
   #ids = new Map(); // id -> name of the sample
 
   constructor() {
-    for (const [id, text] of storedTexts()) this.#texts.set(id, text);
+    for (const [id, text, title] of storedTexts()) {
+      this.#texts.set(id, text);
+      if (title) this.#titles.set(id, title);
+    }
   }
 
   sample(ref) {
@@ -38,20 +42,21 @@ export class SceneLibrary {
     const sample = this.sample(ref);
     const text = this.#texts.get(ref) ?? (sample ? await getText(sample.href) : undefined);
     if (text === undefined) return this.#fetch(ref);
-    if (!sample) return this.post(text);
+    if (!sample) return this.post(text, this.#titles.get(ref));
     const info = await postScene(text);
     this.#texts.set(ref, text);
     this.#ids.set(info.id, ref);
     return { ...info, ref, title: titleOf(sample), text };
   }
 
-  // Posts a scene text from the user. Throws ApiError with the places of the errors in the text.
-  async post(text) {
+  // Posts a scene text from the user. `title` replaces the scene's own. Throws ApiError with the places of the
+  // errors in the text.
+  async post(text, title = "") {
     const info = await postScene(text);
     const name = this.#ids.get(info.id);
     if (name) return { ...info, ref: name, title: titleOf(this.sample(name)), text };
-    this.#keep(info.id, text);
-    return { ...info, ref: info.id, title: info.title || UNTITLED, text };
+    this.#keep(info.id, text, title);
+    return { ...info, ref: info.id, title: title || info.title || UNTITLED, text };
   }
 
   async #fetch(id) {
@@ -60,11 +65,12 @@ export class SceneLibrary {
     return { ...info, ref: id, title: info.title || UNTITLED, text };
   }
 
-  #keep(id, text) {
+  #keep(id, text, title) {
     this.#texts.set(id, text);
+    if (title) this.#titles.set(id, title);
     if (text.length > MAX_STORED_LENGTH) return;
     const stored = storedTexts().filter(([known]) => known !== id);
-    stored.push([id, text]);
+    stored.push([id, text, title]);
     remember(STORAGE_KEY, stored.slice(-MAX_STORED_SCENES));
   }
 }

@@ -252,5 +252,16 @@ export async function drag(page, dx, dy, held = () => {}, button = "left") {
   return height;
 }
 
+// Drags the files at `paths` over the stage, calls `over()` and drops them.
+export async function dropFiles(page, paths, over = () => {}) {
+  const session = await page.context().newCDPSession(page);
+  const data = { items: [], files: paths, dragOperationsMask: 1 };
+  const dispatch = (type) => session.send("Input.dispatchDragEvent", { type, x: 200, y: 300, data });
+  await dispatch("dragEnter");
+  await dispatch("dragOver");
+  await over();
+  await dispatch("drop");
+}
+
 export const near = (actual, expected, tolerance, what) =>
   assert.ok(Math.abs(Number(actual) - expected) <= tolerance, `${what}: ${actual} is not near ${expected}`);
