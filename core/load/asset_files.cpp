@@ -46,7 +46,7 @@ ModelFile read_model_file(const std::string& path) {
   const std::string bytes = read_file(path);
   const bool is_file = path != "-";
   try {
-    return {mesh_format(bytes), bytes.size(), share_model(bytes, is_file ? files_near(path) : ReadNearby())};
+    return {bytes.size(), share_model(bytes, is_file ? files_near(path) : ReadNearby())};
   } catch (const InputError& error) {
     throw BadScene(is_file ? path : "standard input", error);
   }

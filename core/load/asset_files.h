@@ -11,7 +11,6 @@ ReadNearby files_near(const std::filesystem::path& file);
 
 // Model file on the command line.
 struct ModelFile {
-  MeshFormat format;
   std::size_t bytes;
   MeshModelPtr model;
 };

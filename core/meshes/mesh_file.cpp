@@ -4,6 +4,7 @@
 
 #include "core/base/task_scope.h"
 #include "core/meshes/formats.h"
+#include "core/meshes/model_archive.h"
 #include "core/meshes/text.h"
 
 namespace orrery {
@@ -117,6 +118,16 @@ MeshModel read_as(MeshFormat format, std::string_view bytes, const MeshLimits& l
   return {};
 }
 
+// Reads the model in an archive. Adds its path to errors.
+MeshModel read_archived(const ModelArchive& archive, const MeshLimits& limits) {
+  const std::string bytes = archive.read_model_file();
+  try {
+    return read_model(bytes, limits, archive.nearby());
+  } catch (const InputError& error) {
+    fail_at(excerpt(archive.model_name(), 80), error.problems().front().detail);
+  }
+}
+
 }  // namespace
 
 std::string_view name_of(MeshFormat format) {
@@ -135,11 +146,14 @@ MeshFormat mesh_format(std::string_view bytes) {
   if (is_keyword(word, "solid")) return MeshFormat::stl;
   if (std::find(std::begin(kObjWords), std::end(kObjWords), word) != std::end(kObjWords))
     return MeshFormat::obj;
-  throw InputError("", "must be an OBJ, PLY, STL (84 + 50 n bytes if binary), 3MF or glTF file (got " +
-                           std::to_string(bytes.size()) + " bytes that begin with " + excerpt(bytes) + ")");
+  throw InputError("",
+                   "must be an OBJ, PLY, STL (84 + 50 n bytes if binary), 3MF or glTF file, or a ZIP archive "
+                   "of one (got " +
+                       std::to_string(bytes.size()) + " bytes that begin with " + excerpt(bytes) + ")");
 }
 
 MeshModel read_model(std::string_view bytes, const MeshLimits& limits, const ReadNearby& nearby) {
+  if (ModelArchive::is_archive(bytes)) return read_archived(ModelArchive(bytes), limits);
   if (is_utf16(bytes) && binary_stl_triangles(bytes) == 0)
     return read_model(utf8_of_utf16(bytes), limits, nearby);
   const MeshFormat format = mesh_format(bytes);
@@ -148,6 +162,7 @@ MeshModel read_model(std::string_view bytes, const MeshLimits& limits, const Rea
   if (model.mesh.triangles.empty())
     throw InputError("", "mesh must have at least 1 triangle (got 0" + joined(model.mesh.notes) + ")");
   finish_normals(model.mesh);
+  model.format = format;
   return model;
 }
 

@@ -52,7 +52,8 @@ enum class MeshFormat { obj, ply, stl, gltf, three_mf };
 std::string_view name_of(MeshFormat format);  // "obj", "ply", "stl", "gltf" or "3mf"
 
 // Detects the format from the content: glTF and PLY by their first bytes, 3MF by its archive, binary STL by
-// its size, ASCII STL and OBJ by their first word. Throws InputError if no format matches. Throws Cancelled.
+// its size, ASCII STL and OBJ by their first word. Throws InputError if no format matches, as for other
+// archives. Throws Cancelled.
 MeshFormat mesh_format(std::string_view bytes);
 
 // Reads an OBJ, PLY (ASCII, binary of either byte order), STL (ASCII, binary), 3MF or glTF 2.0 file (.glb, or
@@ -68,6 +69,8 @@ MeshFormat mesh_format(std::string_view bytes);
 // normals computed from the faces around the vertex. A mesh from STL has no normals and no uvs. Corners of an
 // STL file at equal positions, and of one colour, become one vertex. Replaces v of glTF by 1 - v, so that (0,
 // 0) is at the lower left.
+//
+// Reads a ZIP archive as read_model() does.
 //
 // Throws InputError (pointer "") with the place in the file, the value and the limit. Before allocating
 // memory, checks every size in the file against `limits` and the number of available bytes. Throws Cancelled.

@@ -63,10 +63,12 @@ struct MeshModel {
   std::vector<ModelMaterial> materials;
   std::vector<ModelImage> images;
   std::string unit = {};  // name of the unit of lengths in the file, or empty if the format has none
+  MeshFormat format = MeshFormat::obj;  // format of the file, or of the model in an archive
 };
 using MeshModelPtr = std::shared_ptr<const MeshModel>;
 
 // Reads a model file: see read_mesh() for the formats and the mesh. Parts of the mesh refer to `materials`.
+// Reads a ZIP archive as the model in it (core/meshes/model_archive.h), with files from the archive only.
 MeshModel read_model(std::string_view bytes, const MeshLimits& limits = {}, const ReadNearby& nearby = {});
 
 // Returns a model of a mesh without materials.

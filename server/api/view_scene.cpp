@@ -195,9 +195,9 @@ ImageSize view_size(const RenderRequest& request) {
   return {request.width.value_or(kSize), request.height.value_or(kSize)};
 }
 
-Json view_scene(const MeshModel& model, MeshFormat format, const ModelReference& reference,
-                const ViewOptions& options, int width, int height) {
-  const StudioAxes axes = StudioAxes::with_up(options.up.value_or(usual_up(format)));
+Json view_scene(const MeshModel& model, const ModelReference& reference, const ViewOptions& options,
+                int width, int height) {
+  const StudioAxes axes = StudioAxes::with_up(options.up.value_or(usual_up(model.format)));
   const std::vector<Vec3d> corners = corners_of(model.mesh);
   const Framing framing = frame_points(corners, {.axes = axes,
                                                  .from = options.from,

@@ -51,7 +51,7 @@ Vec3d usual_up(MeshFormat format);
 // from all directions and a soft key light from the upper left of the camera. Meshes without normals are
 // smooth across edges of less than 30 degrees. Models without materials are grey. REQUIRES: the mesh has
 // triangles.
-nlohmann::ordered_json view_scene(const MeshModel& model, MeshFormat format, const ModelReference& reference,
+nlohmann::ordered_json view_scene(const MeshModel& model, const ModelReference& reference,
                                   const ViewOptions& options, int width, int height);
 
 }  // namespace orrery

@@ -5,6 +5,7 @@
 
 #include "core/base/hash.h"
 #include "core/base/shorten.h"
+#include "core/meshes/zip_file.h"
 #include "server/base/errors.h"
 
 namespace orrery {
@@ -24,11 +25,11 @@ std::size_t bytes_of(const AssetStore::Asset& asset) {
   return sum + (picture && picture->texels ? bytes_of(*picture->texels) : 0);
 }
 
-// Returns the format of a mesh file. Throws InputError that lists the mesh and image formats, since an upload
-// may be either.
-MeshFormat format_of(const std::string& bytes) {
+// Throws InputError that lists the mesh and image formats if the file has none of the mesh formats, since an
+// upload may be either.
+void require_mesh_format(const std::string& bytes) {
   try {
-    return mesh_format(bytes);
+    if (!ZipFile::is_zip(bytes)) mesh_format(bytes);
   } catch (const InputError& error) {
     throw InputError("",
                      error.problems().front().detail + "; an image must be an EXR, HDR, PNG or JPEG file");
@@ -43,9 +44,11 @@ decltype(AssetStore::Asset::content) content_of(const std::string& bytes, std::s
     if (bytes_of(*texels) > max_texel_bytes) texels = nullptr;
     return AssetStore::Asset::Picture{picture_format(bytes), width, height, std::move(texels)};
   }
-  const MeshFormat format = format_of(bytes);
-  TriangleMesh mesh = read_mesh(bytes);
-  return AssetStore::Asset::Mesh{format, mesh.positions.size(), mesh.triangles.size(), std::move(mesh.notes)};
+  require_mesh_format(bytes);
+  MeshModel model = read_model(bytes);
+  TriangleMesh& mesh = model.mesh;
+  return AssetStore::Asset::Mesh{model.format, mesh.positions.size(), mesh.triangles.size(),
+                                 std::move(mesh.notes)};
 }
 
 }  // namespace

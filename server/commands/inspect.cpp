@@ -16,9 +16,11 @@ constexpr const char* kInspectExamples = R"(
 Examples:
   orrery inspect part.stl
   orrery inspect chair.glb --json
+  orrery inspect chair.zip
 
 Prints size, triangles, whether the mesh is watertight, and what the file
-contains that is not modelled. Lengths are in the units of the file.
+contains that is not modelled. Lengths are in the units of the file. A ZIP
+archive is read as the one model in it, with the files that the model names.
 )";
 
 struct InspectOptions {
@@ -35,7 +37,7 @@ nlohmann::ordered_json material_names(const MeshModel& model) {
 }
 
 nlohmann::ordered_json inspection_json(const ModelFile& model, const MeshInspection& found) {
-  return {{"format", name_of(model.format)},
+  return {{"format", name_of(model.model->format)},
           {"bytes", model.bytes},
           {"vertices", model.model->mesh.positions.size()},
           {"triangles", model.model->mesh.triangles.size()},
@@ -68,7 +70,7 @@ std::string inspection_text(const ModelFile& model, const MeshInspection& found)
   const TriangleMesh& mesh = model.model->mesh;
   const Vec3d size = found.bounds.hi - found.bounds.lo;
   std::string text =
-      row("format", std::string(name_of(model.format)) + ", " + grouped(model.bytes) + " bytes");
+      row("format", std::string(name_of(model.model->format)) + ", " + grouped(model.bytes) + " bytes");
   text += row("triangles", grouped(mesh.triangles.size()) +
                                (found.triangles_without_area > 0
                                     ? ", " + grouped(found.triangles_without_area) + " of them without area"

@@ -26,7 +26,8 @@ Examples:
 
 Renders an OBJ, PLY, STL, 3MF or glTF file without a scene: frames the model exactly,
 lights it evenly and from the upper left. Images have 512 x 512 pixels and an
-RMS error of 0.02, unless options set the size, samples, error or time.
+RMS error of 0.02, unless options set the size, samples, error or time. A ZIP
+archive is read as the one model in it, with the files that the model names.
 --print-scene prints the scene instead, which orrery render accepts.
 )";
 
@@ -70,7 +71,7 @@ View view_of(const ViewFlags& flags, const RenderRequest& request) {
     std::cerr << "orrery: warning: " << path << ": " << note << "\n";
   const std::string name = path == "-" ? "model" : std::filesystem::path(path).filename().string();
   const auto [width, height] = view_size(request);
-  view.scene = view_scene(*file.model, file.format, {"file", name, name}, options, width, height);
+  view.scene = view_scene(*file.model, {"file", name, name}, options, width, height);
   return view;
 }
 

@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "core/meshes/zip_file.h"
 #include "server/app/app.h"
 #include "server/routes/access.h"
 #include "server/routes/answers.h"
@@ -34,8 +35,10 @@ FormatNames names_of(PictureFormat format) {
 }
 
 FormatNames names_of(const AssetStore::Asset& asset) {
-  if (const auto* const mesh = std::get_if<AssetStore::Asset::Mesh>(&asset.content))
-    return names_of(mesh->format, asset.bytes);
+  if (const auto* const mesh = std::get_if<AssetStore::Asset::Mesh>(&asset.content)) {
+    const FormatNames names = names_of(mesh->format, asset.bytes);
+    return ZipFile::is_zip(asset.bytes) ? FormatNames{names.name, "application/zip"} : names;
+  }
   return names_of(std::get<AssetStore::Asset::Picture>(asset.content).format);
 }
 
@@ -98,14 +101,14 @@ void add_assets_routes(Router& router, App& app) {
   router
       .add("PUT", "/v1/assets/{sha256}", Scope::write, LogLevel::info, body,
            [&app](Request& request) { return put_asset(app, request); })
-      .describe(
-          {.id = "keep_asset",
-           .summary =
-               "Stores a mesh (OBJ, PLY, STL, 3MF, glTF) or an image (EXR, HDR, PNG, JPEG) under its SHA-256",
-           .parameters = {kAssetId},
-           .body = {"*/*"},
-           .answers = {{200, "The asset was already stored", {"Location", "ETag"}, {asset}},
-                       {201, "The asset is stored", {"Location", "ETag"}, {asset}}}});
+      .describe({.id = "keep_asset",
+                 .summary = "Stores a mesh (OBJ, PLY, STL, 3MF, glTF, ZIP) or an image (EXR, HDR, PNG, JPEG) "
+                            "under its SHA-256",
+                 .description = "A ZIP archive contains one model and the files that the model names",
+                 .parameters = {kAssetId},
+                 .body = {"*/*"},
+                 .answers = {{200, "The asset was already stored", {"Location", "ETag"}, {asset}},
+                             {201, "The asset is stored", {"Location", "ETag"}, {asset}}}});
   router
       .add("GET", "/v1/assets/{sha256}", Scope::read, LogLevel::info,
            [&app](Request& request) { return get_asset(app, request); })
@@ -120,6 +123,7 @@ void add_assets_routes(Router& router, App& app) {
                                {"model/stl"},
                                {"model/gltf-binary"},
                                {"model/gltf+json"},
+                               {"application/zip"},
                                {"image/x-exr"},
                                {"image/vnd.radiance"},
                                {"image/png"},

@@ -37,13 +37,12 @@ const AssetStore::Asset::Mesh& mesh_of(const AssetStore::Asset& asset) {
 
 // Orders the image of a stored model.
 RenderOrder make_view_order(App& app, const Caller& caller, ViewQuery query, const std::string& id,
-                            MeshFormat format, RequestTrace& trace) {
+                            RequestTrace& trace) {
   SceneStore::Prepared scene;
   app.read_assets(caller, trace, [&](const AssetSource& assets) {
     const auto [width, height] = view_size(query.request);
     const MeshModelPtr model = assets.model_asset(id);
-    const nlohmann::json json =
-        view_scene(*model, format, {"asset", id, "Model"}, query.options, width, height);
+    const nlohmann::json json = view_scene(*model, {"asset", id, "Model"}, query.options, width, height);
     scene = app.scenes().get(document_of(json), OneModel(model), caller.client);
   });
   return make_order(std::move(scene), std::move(query.request), FileFormat::png, caller);
@@ -56,7 +55,7 @@ Response post_view(App& app, Request& request) {
   ViewQuery query = read_view_query(request);  // reports errors before the model is stored
   const AssetStore::AddResult added = app.add_asset("", request.body, caller);
   const AssetStore::Asset::Mesh& mesh = mesh_of(*added.asset);
-  const RenderOrder order = make_view_order(app, caller, std::move(query), added.id, mesh.format, trace);
+  const RenderOrder order = make_view_order(app, caller, std::move(query), added.id, trace);
   const Rendered rendered = app.renders().render(order, trace);
   Response response = picture_response(kType, rendered, trace);
   set_content_location(response, kType, order.scene->scene(), *rendered.picture, request.prefix);
@@ -72,8 +71,8 @@ Response get_view(App& app, Request& request) {
   RequestTrace trace;
   const std::string& id = request.path_value("sha256");
   AssetStore::require_name(id);
-  const RenderOrder order = make_view_order(app, caller_of(request), read_view_query(request), id,
-                                            mesh_of(*app.assets().find(id)).format, trace);
+  mesh_of(*app.assets().find(id));  // reports images and missing assets
+  const RenderOrder order = make_view_order(app, caller_of(request), read_view_query(request), id, trace);
   // A later version may frame and light models in another way, and the asset may be removed.
   return frame_response(app, request, order, trace, "no-cache");
 }
@@ -116,9 +115,10 @@ void add_view_routes(Router& router, App& app) {
       .add("POST", "/v1/view", Scope::write, LogLevel::info, body,
            [&app](Request& request) { return post_view(app, request); })
       .describe({.id = "view_model",
-                 .summary = "Renders a model (OBJ, PLY, STL, 3MF, glTF) without a scene",
+                 .summary = "Renders a model (OBJ, PLY, STL, 3MF, glTF, ZIP) without a scene",
                  .description = "Stores the model as an asset, frames it exactly, lights it and renders it "
-                                "until the error is small",
+                                "until the error is small. A ZIP archive contains one model and the files "
+                                "that the model names",
                  .parameters = described_parameters(),
                  .renders = true,
                  .body = {"*/*"},

@@ -25,6 +25,22 @@ TEST_F(ViewCommand, RendersModelWithoutScene) {
   EXPECT_EQ(run("view - --width 40 --height 30 --samples 2 -o - < '" + model() + "'").out, to_output.out);
 }
 
+TEST_F(ViewCommand, ReadsArchives) {
+  const std::string archive =
+      write("cube.zip", test::Zip().add("a/cube.stl", test::binary_stl_of(test::cube())).bytes());
+  const std::string options = " --width 40 --height 30 --samples 2 -o -";
+  const Outcome image = run("view " + archive + options);
+  ASSERT_EQ(image.status, 0) << image.err;
+  EXPECT_TRUE(image.out == run(view(options)).out);
+  EXPECT_TRUE(run("view - " + options + " < " + archive).out == image.out);
+  ASSERT_EQ(run("view " + archive + " --width 40 --height 30 --print-scene -o " + file("s.json")).status, 0);
+  EXPECT_TRUE(run("render " + file("s.json") + options).out == image.out) << "the mesh of a scene";
+  EXPECT_EQ(nlohmann::json::parse(run("inspect --json " + archive).out).at("format"), "stl");
+  const Outcome refused = run("inspect " + write("none.zip", test::Zip().add("a.txt", "").bytes()));
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("archive must contain a model"), std::string::npos) << refused.err;
+}
+
 // The printed scene, rendered in the folder of the model, is the same image.
 TEST_F(ViewCommand, PrintsSceneOfImage) {
   const std::string options = "--from iso --ground grid --width 40 --height 30 ";

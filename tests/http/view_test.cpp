@@ -3,6 +3,7 @@
 
 #include "core/base/hash.h"
 #include "tests/http/daemon.h"
+#include "tests/meshes/writers.h"
 
 namespace orrery {
 namespace {
@@ -35,6 +36,26 @@ TEST_F(View, RendersUploadedModel) {
   EXPECT_NE(client_.Get(path(kSmall + "&from=front"))->body, posted->body);
   const std::string scene = "/v1/scenes/" + posted->get_header_value("Orrery-Scene-Id");
   EXPECT_EQ(client_.Get(scene + "/frame.png?samples=2")->body, posted->body) << "the scene has the size";
+}
+
+// The image is that of the model outside of an archive, and up is that of its format.
+TEST_F(View, RendersArchivedModel) {
+  const std::string model = test::binary_stl_of(test::cube());
+  const std::string archive = test::Zip().add("parts/cube.stl", model).add("readme.txt", "old").bytes();
+  const auto posted = post(kSmall, archive);
+  ASSERT_TRUE(posted && posted->status == 200) << posted->body;
+  EXPECT_EQ(posted->body, post(kSmall, model)->body);
+  const std::string asset = "/v1/assets/" + posted->get_header_value("Orrery-Asset-Id");
+  EXPECT_EQ(client_.Get(asset + "/view.png" + kSmall)->body, posted->body);
+  const auto got = client_.Get(asset);
+  EXPECT_EQ(got->body, archive);
+  EXPECT_EQ(got->get_header_value("Content-Type"), "application/zip");
+  const auto put = client_.Put(asset, archive, "application/octet-stream");
+  EXPECT_EQ(nlohmann::json::parse(put->body).at("format"), "stl");
+  const auto refused = expect_problem(post(kSmall, test::Zip().add("readme.txt", "old").bytes()), 422);
+  EXPECT_EQ(refused.at("errors").at(0).at("detail"),
+            "archive must contain a model: .gltf, .glb, .obj, .ply, .stl or .3mf (got none)");
+  expect_problem(post(kSmall, archive.substr(0, 100)), 422);
 }
 
 TEST_F(View, ReturnsNotModifiedForKnownImage) {
