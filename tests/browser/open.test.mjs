@@ -238,3 +238,53 @@ pageTest(
   },
   { expected: /status of 4/ },
 );
+
+pageTest("an OBJ file and its materials are opened together", REST, async (page) => {
+  await rest(page);
+  const head = ["mtllib Paint.mtl", "usemtl red", ""].join("\n");
+  const model = fileOf("pair/tetra.obj", tetrahedronObj(head));
+  const material = fileOf("pair/Paint.mtl", "newmtl red\nKd 0.8 0.1 0.1\n");
+  await dropFiles(page, [material, model]);
+  await title(page, "tetra.obj");
+  await page.locator('#stage[data-shows="stream"]').waitFor();
+  const { asset } = (await sceneOf(page)).objects[0];
+  const sent = await (await fetch(`${daemon.url}v1/assets/${asset}`)).text();
+  assert.ok(sent.startsWith("PK\x03\x04") && sent.includes("newmtl red"));
+});
+
+pageTest("a dropped folder is opened with the files below it", REST, async (page) => {
+  await rest(page);
+  const { json, bin } = tetrahedronGltf("data/corners%20ä.bin");
+  fileOf("Chair/chair.gltf", JSON.stringify(json));
+  fileOf("Chair/data/corners ä.bin", bin);
+  fileOf("Chair/.cache.obj", "not a model");
+  await dropFiles(page, [join(folder, "Chair")]);
+  await title(page, "chair.gltf");
+  assert.equal((await sceneOf(page)).objects[0].type, "mesh");
+});
+
+pageTest("the button opens several files", REST, async (page) => {
+  await rest(page);
+  const { json, bin } = tetrahedronGltf("corners.bin");
+  const model = fileOf("several/chair.gltf", JSON.stringify(json));
+  const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.locator("#open-files").click()]);
+  await chooser.setFiles([model, fileOf("several/corners.bin", bin)]);
+  await title(page, "chair.gltf");
+});
+
+pageTest(
+  "a model whose files are missing, and several models, show the reason",
+  REST,
+  async (page) => {
+    await rest(page);
+    const { json } = tetrahedronGltf("corners.bin");
+    await dropFiles(page, [fileOf("alone/chair.gltf", JSON.stringify(json))]);
+    await card(page).getByText("corners.bin").waitFor();
+    await dropFiles(
+      page,
+      ["a.obj", "b.obj"].map((name) => fileOf(`two/${name}`, tetrahedronObj())),
+    );
+    await card(page).getByText('Archive must contain one model (got 2: "a.obj", "b.obj").').waitFor();
+  },
+  { expected: /status of 422/ },
+);
