@@ -57,6 +57,18 @@ void check_size(const std::string& place, const zip_stat_t& entry, const ZipLimi
                        grouped(entry.size) + " bytes from " + grouped(entry.comp_size) + ")");
 }
 
+// Returns the packed size of an entry. Throws InputError if it has more than `bytes_left` bytes: the entry is
+// not in the file, or overlaps others, which would let a small file unpack to much.
+std::uint64_t packed_size(zip* archive, std::uint64_t index, std::uint64_t bytes_left) {
+  zip_stat_t entry;
+  if (zip_stat_index(archive, index, 0, &entry) < 0 || !(entry.valid & ZIP_STAT_COMP_SIZE)) return 0;
+  if (entry.comp_size > bytes_left)
+    fail_at("entry " + std::to_string(index + 1),
+            "packed entries must not overlap, or have more bytes than the file (got " +
+                grouped(entry.comp_size) + " bytes, of which " + grouped(bytes_left) + " are left)");
+  return entry.comp_size;
+}
+
 class ZipError {
  public:
   ZipError() { zip_error_init(&error_); }
@@ -87,9 +99,11 @@ ZipFile::ZipFile(std::string_view bytes, const ZipLimits& limits) : limits_(limi
     fail_zip("archive", error.get());
   }
   const auto count = zip_get_num_entries(archive_.get(), 0);
+  std::uint64_t packed_bytes = 0;
   for (std::int64_t i = 0; i < count; ++i) {
     checkpoint();
     const auto index = static_cast<std::uint64_t>(i);
+    packed_bytes += packed_size(archive_.get(), index, bytes.size() - packed_bytes);
     const char* name = zip_get_name(archive_.get(), index, ZIP_FL_ENC_GUESS);
     if (name && indices_.emplace(name, index).second) names_.emplace_back(name);
   }

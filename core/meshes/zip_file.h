@@ -29,7 +29,8 @@ class ZipFile {
   // Returns true if the bytes begin like an archive with at least one entry.
   static bool is_zip(std::string_view bytes) { return bytes.starts_with("PK\x03\x04"); }
 
-  // Reads the directory. REQUIRES: `bytes` outlive the reader.
+  // Reads the directory. Throws InputError if the entries together have more packed bytes than the file, as
+  // entries that overlap. REQUIRES: `bytes` outlive the reader.
   explicit ZipFile(std::string_view bytes, const ZipLimits& limits = {});
 
   // Returns the names of the entries in UTF-8, in the order of the archive and without repetitions. Names are

@@ -1,6 +1,6 @@
 #include <nlohmann/json.hpp>
 
-#include "core/meshes/zip_file.h"
+#include "core/meshes/model_archive.h"
 #include "server/app/app.h"
 #include "server/routes/access.h"
 #include "server/routes/answers.h"
@@ -37,7 +37,7 @@ FormatNames names_of(PictureFormat format) {
 FormatNames names_of(const AssetStore::Asset& asset) {
   if (const auto* const mesh = std::get_if<AssetStore::Asset::Mesh>(&asset.content)) {
     const FormatNames names = names_of(mesh->format, asset.bytes);
-    return ZipFile::is_zip(asset.bytes) ? FormatNames{names.name, "application/zip"} : names;
+    return ModelArchive::is_archive(asset.bytes) ? FormatNames{names.name, "application/zip"} : names;
   }
   return names_of(std::get<AssetStore::Asset::Picture>(asset.content).format);
 }

@@ -64,6 +64,18 @@ TEST(ZipFile, RejectsEntriesOfAnotherSizeThanTheirRecord) {
               HasSubstr("entry \"a\""));
 }
 
+// Two records of the directory refer to the same bytes.
+TEST(ZipFile, RejectsEntriesThatOverlap) {
+  std::string bytes = Zip().add("a", std::string(1000, 'x')).bytes();
+  EXPECT_EQ(zip_problem(bytes, "a"), "accepted");
+  const std::size_t first = bytes.find("PK\1\2"), size = bytes.find("PK\5\6") - first;
+  bytes.insert(first, bytes.substr(first, size));
+  const std::size_t end = bytes.size() - 22;  // number of records, twice, and their size
+  bytes[end + 8] = bytes[end + 10] = 2;
+  bytes[end + 12] = static_cast<char>(2 * size);
+  EXPECT_THAT(zip_problem(bytes, "a"), HasSubstr("entry 2: packed entries must not overlap"));
+}
+
 TEST(ZipFile, ChecksLimitsBeforeUnpacking) {
   const std::string two = Zip().add("a", "hello").add("b", "world").bytes();
   EXPECT_THAT(zip_problem(two, "a", {.entries = 1}), HasSubstr("archive has more than 1 entries (limit 1)"));
