@@ -2,13 +2,13 @@
 
 #include "core/base/task_scope.h"
 #include "core/meshes/formats.h"
+#include "core/meshes/gltf_deformation.h"
 #include "core/meshes/gltf_file.h"
 #include "core/meshes/gltf_materials.h"
 #include "core/meshes/gltf_transform.h"
 #include "core/meshes/text.h"
 
-// glTF 2.0 (Khronos, ISO/IEC 12113:2022): sections 3.5 (scenes) and 3.7 (meshes). Skins and morph targets are
-// ignored: a mesh keeps its stored pose.
+// glTF 2.0 (Khronos, ISO/IEC 12113:2022): sections 3.5 (scenes) and 3.7 (meshes).
 namespace orrery {
 namespace {
 
@@ -17,10 +17,17 @@ namespace {
 constexpr std::size_t kMaxPlaced = 250'000;
 constexpr std::size_t kMaxNamed = 20;  // extensions that notes name
 
-// Returns true if the extension does not change geometry, or if it is supported (quantized attributes).
+// Extensions of geometry that are supported.
+constexpr std::string_view kGeometry[] = {"KHR_mesh_quantization", "EXT_meshopt_compression",
+                                          "KHR_draco_mesh_compression"};
+
+bool is_supported(std::string_view extension) {
+  return std::find(std::begin(kGeometry), std::end(kGeometry), extension) != std::end(kGeometry);
+}
+
+// Returns true if the extension does not change geometry.
 bool is_harmless(std::string_view extension) {
-  constexpr std::string_view kPrefixes[] = {"KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_",
-                                            "KHR_mesh_quantization"};
+  constexpr std::string_view kPrefixes[] = {"KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_"};
   return std::any_of(std::begin(kPrefixes), std::end(kPrefixes),
                      [&](std::string_view prefix) { return extension.starts_with(prefix); });
 }
@@ -33,12 +40,12 @@ class SceneReader {
   MeshModel read() {
     if (const auto required = file_.root().find("extensionsRequired"))
       for (std::size_t i = 0; i < required->size(); ++i)
-        if (const GltfValue extension = required->item(i); !is_harmless(extension.text()))
+        if (const GltfValue extension = required->item(i);
+            !is_supported(extension.text()) && !is_harmless(extension.text()))
           extension.fail("must be an extension that does not change geometry (got " +
                          excerpt(extension.text()) + ")");
     materials_ = read_gltf_materials(file_);
-    const GltfValue nodes = file_.root().at("nodes");
-    place(nodes, roots(nodes));
+    place(file_.root().at("nodes"));
     for_each_attribute([&](auto& list, auto filler) {
       if (!list.empty()) list.resize(mesh_.positions.size(), filler);
     });
@@ -50,30 +57,34 @@ class SceneReader {
   // Names the contents that are not modelled.
   void add_notes() {
     mesh_.notes = std::move(materials_.notes);
-    constexpr std::pair<const char*, const char*> kLists[] = {
-        {"animations", "animations"}, {"skins", "skins"}, {"cameras", "cameras"}};
+    constexpr std::pair<const char*, const char*> kLists[] = {{"animations", "animations"},
+                                                              {"cameras", "cameras"}};
     for (const auto& [key, what] : kLists)
       if (const auto list = file_.root().find(key); list && list->size() > 0)
         mesh_.notes.push_back(grouped(list->size()) + " " + what + " are not modelled");
-    if (has_morphs_) mesh_.notes.push_back("morph targets are not modelled");
     if (without_surface_ > 0)
       mesh_.notes.push_back(grouped(without_surface_) + " primitives of points or lines are not rendered");
     if (const auto used = file_.root().find("extensionsUsed"))
       for (std::size_t i = 0; i < std::min<std::size_t>(used->size(), kMaxNamed); ++i)
         if (const std::string& name = used->item(i).text();
-            name != "KHR_mesh_quantization" && !is_material_extension(name))
+            !is_supported(name) && !is_material_extension(name))
           mesh_.notes.push_back("extension " + excerpt(name) + " is not modelled");
   }
 
   // Returns the root nodes of the default scene. If the file has no default scene, returns every node that is
   // not a child.
   std::vector<std::size_t> roots(const GltfValue& nodes) const {
+    const auto scene = file_.root().find("scene");
+    if (!scene) return orphans(nodes);
     std::vector<std::size_t> found;
-    if (const auto scene = file_.root().find("scene")) {
-      const auto listed = file_.root().at("scenes").item(scene->integer()).find("nodes");
-      for (std::size_t i = 0; listed && i < listed->size(); ++i) found.push_back(listed->item(i).integer());
-      return found;
-    }
+    const auto listed = file_.root().at("scenes").item(scene->integer()).find("nodes");
+    for (std::size_t i = 0; listed && i < listed->size(); ++i) found.push_back(listed->item(i).integer());
+    return found;
+  }
+
+  // Returns the nodes that are not a child.
+  static std::vector<std::size_t> orphans(const GltfValue& nodes) {
+    std::vector<std::size_t> found;
     std::vector<bool> is_child(nodes.size());
     for (std::size_t i = 0; i < nodes.size(); ++i)
       for_children(nodes.item(i), [&](std::size_t child) {
@@ -90,35 +101,74 @@ class SceneReader {
     for (std::size_t i = 0; children && i < children->size(); ++i) visit(children->item(i).integer());
   }
 
-  // Places the nodes depth first, in file order. Rejects a node that is reached twice, through a cycle or
-  // from two parents.
-  void place(const GltfValue& nodes, const std::vector<std::size_t>& roots) {
+  // Places the meshes of the scene in the order of walk().
+  void place(const GltfValue& nodes) {
+    world_.resize(nodes.size());
+    const std::vector<std::size_t> order = walk(nodes, roots(nodes));
+    if (file_.root().find("skins")) {  // joints may be outside the scene
+      std::vector<std::size_t> others = orphans(nodes);
+      std::erase_if(others, [&](std::size_t node) { return world_[node].has_value(); });
+      walk(nodes, others);
+    }
+    for (const std::size_t index : order) {
+      const GltfValue node = nodes.item(index);
+      const auto mesh_index = node.find("mesh");
+      if (!mesh_index) continue;
+      const GltfValue mesh = file_.root().at("meshes").item(mesh_index->integer());
+      const MeshPose pose = pose_of(index, node, mesh);
+      const GltfValue primitives = mesh.at("primitives");
+      for (std::size_t i = 0; i < primitives.size(); ++i) add_primitive(primitives.item(i), pose);
+    }
+  }
+
+  // Computes the transforms of the nodes below the roots. Returns the nodes depth first, in file order.
+  // Rejects a node that is reached twice, through a cycle or from two parents.
+  std::vector<std::size_t> walk(const GltfValue& nodes, const std::vector<std::size_t>& roots) {
     struct Visit {
       std::size_t node;
       Affined world_from_parent;
     };
     std::vector<Visit> stack;
     for (auto root = roots.rbegin(); root != roots.rend(); ++root) stack.push_back({*root, {}});
-    std::vector<bool> reached(nodes.size());
+    std::vector<std::size_t> order;
     while (!stack.empty()) {
+      checkpoint();
       const Visit visit = stack.back();
       stack.pop_back();
       const GltfValue node = nodes.item(visit.node);
-      if (reached[visit.node]) node.fail("nodes must form a tree (got this node twice)");
-      reached[visit.node] = true;
-      const Affined world_from_node = compose(visit.world_from_parent, transform_of(node));
-      if (const auto mesh = node.find("mesh")) {
-        const GltfValue primitives = file_.root().at("meshes").item(mesh->integer()).at("primitives");
-        for (std::size_t i = 0; i < primitives.size(); ++i)
-          add_primitive(primitives.item(i), world_from_node);
-      }
+      if (world_[visit.node]) node.fail("nodes must form a tree (got this node twice)");
+      const Affined world = compose(visit.world_from_parent, transform_of(node));
+      world_[visit.node] = world;
+      order.push_back(visit.node);
       const std::size_t first = stack.size();
-      for_children(node, [&](std::size_t child) { stack.push_back({child, world_from_node}); });
+      for_children(node, [&](std::size_t child) { stack.push_back({child, world}); });
       std::reverse(stack.begin() + static_cast<std::ptrdiff_t>(first), stack.end());
     }
+    return order;
   }
 
-  void add_primitive(const GltfValue& primitive, const Affined& world_from_node) {
+  MeshPose pose_of(std::size_t index, const GltfValue& node, const GltfValue& mesh) {
+    MeshPose pose{*world_[index], {}, nullptr};
+    auto weights = node.find("weights");
+    if (!weights) weights = mesh.find("weights");
+    for (std::size_t i = 0; weights && i < weights->size(); ++i)
+      pose.weights.push_back(weights->item(i).number());
+    if (const auto skin = node.find("skin")) pose.joints = &joints_of(*skin);
+    return pose;
+  }
+
+  const JointTransforms& joints_of(const GltfValue& user) {
+    const auto known = joints_.find(user.integer());
+    if (known != joints_.end()) return known->second;
+    const GltfValue skin = file_.root().at("skins").item(user.integer());
+    return joints_[user.integer()] = joint_transforms(file_, skin, [&](const GltfValue& joint) {
+             if (joint.integer() >= world_.size() || !world_[joint.integer()])
+               joint.fail("must be a node below a root (got " + std::to_string(joint.integer()) + ")");
+             return *world_[joint.integer()];
+           });
+  }
+
+  void add_primitive(const GltfValue& primitive, const MeshPose& pose) {
     if (++placed_ > kMaxPlaced)
       primitive.fail("file places more than " + grouped(kMaxPlaced) + " primitives (limit " +
                      grouped(kMaxPlaced) + ")");
@@ -128,7 +178,7 @@ class SceneReader {
       ++without_surface_;
       return;
     }
-    if (primitive.find("targets")) has_morphs_ = true;
+    file_.decode_primitive(primitive, limits_);
     const GltfValue attributes = primitive.at("attributes");
     const std::size_t first = mesh_.positions.size();
     MeshPart part{static_cast<std::uint32_t>(mesh_.triangles.size())};
@@ -137,13 +187,16 @@ class SceneReader {
       file_.root().at("materials").item(material->integer());  // throws if there is no such material
       part.material = static_cast<std::int32_t>(material->integer());
     }
-    add_vertices(attributes, world_from_node, part);
+    const GltfNumbers positions = file_.accessor(attributes.at("POSITION"), "VEC3");
+    check_vertices(mesh_.positions.size() + positions.count, limits_);
+    const VertexPlacer placer(file_, primitive, positions.count, pose);
+    add_vertices(attributes, positions, placer, part);
     const auto indices = primitive.find("indices");
     std::vector<std::uint32_t> order = indices ? read_indices(*indices, first) : std::vector<std::uint32_t>();
     if (!indices)
       for (std::size_t i = first; i < mesh_.positions.size(); ++i)
         order.push_back(static_cast<std::uint32_t>(i));
-    add_triangles(primitive, mode, order, scaled_determinant(world_from_node) < 0);
+    add_triangles(primitive, mode, order, placer.mirrors());
     mesh_.parts.push_back(part);
   }
 
@@ -156,14 +209,13 @@ class SceneReader {
 
   // Adds the vertices of a primitive, and records the attributes that they have. Vertices before them that
   // lack an attribute receive a filler.
-  void add_vertices(const GltfValue& attributes, const Affined& world_from_node, MeshPart& part) {
+  void add_vertices(const GltfValue& attributes, const GltfNumbers& positions, const VertexPlacer& placer,
+                    MeshPart& part) {
     const std::size_t first = mesh_.positions.size();
-    const GltfNumbers positions = file_.accessor(attributes.at("POSITION"), "VEC3");
-    check_vertices(mesh_.positions.size() + positions.count, limits_);
     for (std::size_t i = 0; i < positions.count; ++i) {
       checkpoint(i);
       const Vec3d p =
-          world_from_node.point({positions.value(i, 0), positions.value(i, 1), positions.value(i, 2)});
+          placer.position(i, {positions.value(i, 0), positions.value(i, 1), positions.value(i, 2)});
       if (!is_position(p)) attributes.fail(position_problem(p, " at vertex " + std::to_string(i)));
       mesh_.positions.push_back(p);
     }
@@ -173,7 +225,7 @@ class SceneReader {
     for (std::size_t i = 0; normals && i < positions.count; ++i) {
       checkpoint(i);
       const Vec3d n(normals->value(i, 0), normals->value(i, 1), normals->value(i, 2));
-      const Vec3d turned = transformed_normal(world_from_node, n);
+      const Vec3d turned = placer.normal(i, n);
       if (!is_finite(turned))
         attributes.fail("normals must be finite (got " + text_of(n) + " at vertex " + std::to_string(i) +
                         ")");
@@ -266,8 +318,9 @@ class SceneReader {
   const MeshLimits& limits_;
   TriangleMesh mesh_;
   GltfMaterials materials_;
+  std::vector<std::optional<Affined>> world_;        // transforms of the nodes, once computed
+  std::map<std::uint64_t, JointTransforms> joints_;  // by skin
   std::size_t placed_ = 0, without_surface_ = 0;
-  bool has_morphs_ = false;
 };
 
 }  // namespace

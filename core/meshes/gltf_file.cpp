@@ -9,6 +9,8 @@
 
 #include "core/base/task_scope.h"
 #include "core/meshes/formats.h"
+#include "core/meshes/gltf_draco.h"
+#include "core/meshes/gltf_meshopt.h"
 #include "core/meshes/text.h"
 
 // glTF 2.0 (Khronos, ISO/IEC 12113:2022): sections 3.6 (binary data) and 4 (GLB).
@@ -35,13 +37,16 @@ struct ComponentType {
   std::size_t bytes;
   double (*load)(const char*);
   double (*load_normalized)(const char*);
+  double most;  // largest integer, or 0 for floating point numbers
 };
-constexpr ComponentType kComponentTypes[] = {{5120, 1, load<std::int8_t, false>, load<std::int8_t, true>},
-                                             {5121, 1, load<std::uint8_t, false>, load<std::uint8_t, true>},
-                                             {5122, 2, load<std::int16_t, false>, load<std::int16_t, true>},
-                                             {5123, 2, load<std::uint16_t, false>, load<std::uint16_t, true>},
-                                             {5125, 4, load<std::uint32_t, false>, load<std::uint32_t, true>},
-                                             {5126, 4, load<float, false>, load<float, false>}};
+template <class T>
+constexpr ComponentType integers(std::uint64_t code) {
+  return {code, sizeof(T), load<T, false>, load<T, true>, static_cast<double>(std::numeric_limits<T>::max())};
+}
+constexpr ComponentType kComponentTypes[] = {
+    integers<std::int8_t>(5120),   integers<std::uint8_t>(5121),
+    integers<std::int16_t>(5122),  integers<std::uint16_t>(5123),
+    integers<std::uint32_t>(5125), {5126, 4, load<float, false>, load<float, false>, 0}};
 
 ComponentType component_type(const GltfValue& code) {
   for (const ComponentType& type : kComponentTypes)
@@ -131,14 +136,34 @@ std::string decode_percent(const std::string& text) {
 }
 
 std::size_t components_of(std::string_view type) {
-  return type == "SCALAR" ? 1 : type == "VEC2" ? 2 : type == "VEC3" ? 3 : 4;
+  return type == "SCALAR" ? 1 : type == "VEC2" ? 2 : type == "VEC3" ? 3 : type == "MAT4" ? 16 : 4;
 }
 
-// Maximum size of all files that a file names.
+// Returns the numbers of elements that follow each other.
+GltfNumbers numbers_of(const std::vector<double>& values, std::size_t components) {
+  return {reinterpret_cast<const char*>(values.data()),
+          values.size() / components,
+          components * sizeof(double),
+          components,
+          sizeof(double),
+          [](const char* bytes) {
+            double value;
+            std::memcpy(&value, bytes, sizeof value);
+            return value;
+          }};
+}
+
+// Attributes that are read from a Draco mesh.
+constexpr const char* kDracoAttributes[] = {"POSITION",   "NORMAL",     "COLOR_0",    "TEXCOORD_0",
+                                            "TEXCOORD_1", "TEXCOORD_2", "TEXCOORD_3", "TEXCOORD_4",
+                                            "TEXCOORD_5", "TEXCOORD_6", "TEXCOORD_7", "JOINTS_0",
+                                            "JOINTS_1",   "WEIGHTS_0",  "WEIGHTS_1"};
+
+// Maximum size of all files that a file names, and of all decoded buffer views.
 constexpr std::size_t kMaxFileBytes = std::size_t{1} << 30;
 
-// Maximum number of values of an accessor that is not in a buffer.
-constexpr std::uint64_t kMaxUnpacked = 30'000'000;
+// Maximum number of values of an accessor that is not in a buffer, and of all of them.
+constexpr std::uint64_t kMaxUnpacked = 30'000'000, kMaxUnpackedInAll = 100'000'000;
 
 }  // namespace
 
@@ -203,15 +228,30 @@ std::string_view GltfFile::buffer(const GltfValue& user) {
   return entry.bytes;
 }
 
+std::string_view GltfFile::bytes_in(const GltfValue& range) {
+  const std::string_view bytes = buffer(range.at("buffer"));
+  const std::uint64_t offset = integer_or(range, "byteOffset", 0), length = range.at("byteLength").integer();
+  if (offset > bytes.size() || length > bytes.size() - offset)
+    range.fail("byteOffset + byteLength must be at most " + std::to_string(bytes.size()) +
+               ", the buffer size in bytes (got " + std::to_string(offset) + " + " + std::to_string(length) +
+               ")");
+  return bytes.substr(offset, length);
+}
+
 std::string_view GltfFile::view(const GltfValue& user) {
   const GltfValue view = root().at("bufferViews").item(user.integer());
-  const std::string_view bytes = buffer(view.at("buffer"));
-  const std::uint64_t offset = integer_or(view, "byteOffset", 0), length = view.at("byteLength").integer();
-  if (offset > bytes.size() || length > bytes.size() - offset)
-    view.fail("byteOffset + byteLength must be at most " + std::to_string(bytes.size()) +
-              ", the buffer size in bytes (got " + std::to_string(offset) + " + " + std::to_string(length) +
-              ")");
-  return bytes.substr(offset, length);
+  const auto extension = extension_of(view, "EXT_meshopt_compression");
+  return extension ? expanded(user.integer(), view, *extension) : bytes_in(view);
+}
+
+std::string_view GltfFile::expanded(std::uint64_t index, const GltfValue& view, const GltfValue& extension) {
+  if (const auto known = expanded_.find(index); known != expanded_.end()) return known->second;
+  const MeshoptView compressed(view, extension);
+  expanded_bytes_ += compressed.decoded_bytes();
+  if (compressed.decoded_bytes() > kMaxFileBytes || expanded_bytes_ > kMaxFileBytes)
+    extension.fail("compressed buffer views have more than " + grouped(kMaxFileBytes) +
+                   " decoded bytes (limit " + grouped(kMaxFileBytes) + ")");
+  return expanded_[index] = compressed.decode(bytes_in(extension));
 }
 
 GltfNumbers GltfFile::elements(const GltfValue& place, std::uint64_t count, std::string_view type,
@@ -247,6 +287,10 @@ GltfNumbers GltfFile::unpacked(const GltfValue& accessor, std::uint64_t count, s
   if (count == 0 || count > kMaxUnpacked / components)
     accessor.fail("count must be from 1 to " + grouped(kMaxUnpacked / components) + " (got " +
                   std::to_string(count) + ")");
+  unpacked_values_ += count * components;
+  if (unpacked_values_ > kMaxUnpackedInAll)
+    accessor.fail("sparse accessors, and those without a buffer view, have more than " +
+                  grouped(kMaxUnpackedInAll) + " numbers (limit " + grouped(kMaxUnpackedInAll) + ")");
   std::vector<double>& values = unpacked_.emplace_back(count * components);
   if (accessor.find("bufferView")) {
     const GltfNumbers dense = elements(accessor, count, type, accessor.at("componentType"), normalized);
@@ -274,16 +318,48 @@ GltfNumbers GltfFile::unpacked(const GltfValue& accessor, std::uint64_t count, s
         values[static_cast<std::size_t>(at) * components + c] = replacing.value(i, c);
     }
   }
-  return {reinterpret_cast<const char*>(values.data()),
-          count,
-          components * sizeof(double),
-          components,
-          sizeof(double),
-          [](const char* bytes) {
-            double value;
-            std::memcpy(&value, bytes, sizeof value);
-            return value;
-          }};
+  return numbers_of(values, components);
+}
+
+void GltfFile::decode_primitive(const GltfValue& primitive, const MeshLimits& limits) {
+  const auto extension = extension_of(primitive, "KHR_draco_mesh_compression");
+  if (!extension) return;
+  if (integer_or(primitive, "mode", 4) != 4) primitive.at("mode").fail("must be 4 for a Draco mesh");
+  const auto accessor_of = [&](const GltfValue& user) { return root().at("accessors").item(user.integer()); };
+  const GltfValue view_index = extension->at("bufferView"), indices = primitive.at("indices");
+  std::vector<std::uint64_t> key{view_index.integer(), indices.integer()};
+  std::vector<DracoAttribute> attributes;
+  std::vector<GltfValue> users;
+  for (const char* const name : kDracoAttributes) {
+    const auto id = extension->at("attributes").find(name), user = primitive.at("attributes").find(name);
+    if (!id || !user) continue;
+    attributes.push_back({id->integer(), components_of(accessor_of(*user).at("type").text())});
+    users.push_back(*user);
+    key.insert(key.end(), {id->integer(), user->integer()});
+  }
+  if (!decoded_primitives_.insert(std::move(key)).second) return;
+  const std::uint64_t points = accessor_of(primitive.at("attributes").at("POSITION")).at("count").integer(),
+                      corners = accessor_of(indices).at("count").integer();
+  check_vertices(points, limits);
+  check_triangles(corners / 3, limits);
+  if (corners % 3 != 0) indices.fail("count must be a multiple of 3 (got " + std::to_string(corners) + ")");
+  try {
+    DracoMesh mesh = decode_draco(view(view_index), points, corners / 3, attributes);
+    set_accessor(indices, std::move(mesh.indices));
+    for (std::size_t i = 0; i < users.size(); ++i) set_accessor(users[i], std::move(mesh.attributes[i]));
+  } catch (const InputError& error) {
+    extension->fail(error.problems().front().detail);
+  }
+}
+
+void GltfFile::set_accessor(const GltfValue& user, std::vector<double> values) {
+  const GltfValue accessor = root().at("accessors").item(user.integer());
+  const auto flag = accessor.find("normalized");
+  const ComponentType type = component_type(accessor.at("componentType"));
+  if (flag && flag->flag() && type.most > 0)
+    for (double& value : values) value = std::max(value / type.most, -1.0);
+  known_[user.integer()] =
+      numbers_of(unpacked_.emplace_back(std::move(values)), components_of(accessor.at("type").text()));
 }
 
 GltfNumbers GltfFile::accessor(const GltfValue& user, std::string_view type) {
@@ -294,11 +370,9 @@ GltfNumbers GltfFile::accessor(const GltfValue& user, std::string_view type) {
   const auto flag = accessor.find("normalized");
   const bool normalized = flag && flag->flag();
   const std::uint64_t count = accessor.at("count").integer();
-  if (accessor.find("sparse") || !accessor.find("bufferView")) {
-    const auto known = known_.find(user.integer());
-    if (known != known_.end()) return known->second;
+  if (const auto known = known_.find(user.integer()); known != known_.end()) return known->second;
+  if (accessor.find("sparse") || !accessor.find("bufferView"))
     return known_[user.integer()] = unpacked(accessor, count, type, normalized);
-  }
   return elements(accessor, count, type, accessor.at("componentType"), normalized);
 }
 

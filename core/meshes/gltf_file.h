@@ -2,6 +2,7 @@
 
 #include <deque>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -34,8 +35,13 @@ class GltfFile {
 
   // Returns the numbers of the accessor whose index is the value `user`, with the replacements of a sparse
   // accessor. Throws InputError if there is no such accessor, an element is outside the buffer view, or the
-  // type is not `type` ("SCALAR", "VEC2", "VEC3" or "VEC4").
+  // type is not `type` ("SCALAR", "VEC2", "VEC3", "VEC4" or "MAT4").
   GltfNumbers accessor(const GltfValue& user, std::string_view type);
+
+  // Decodes the vertices and indices of a primitive that uses KHR_draco_mesh_compression. From then on,
+  // accessor() returns them for the accessors of the primitive. Does nothing for other primitives. Throws
+  // InputError if the mesh is damaged or too large, or its sizes differ from those of the accessors.
+  void decode_primitive(const GltfValue& primitive, const MeshLimits& limits);
 
   // Returns the bytes of an image. Throws InputError if they cannot be read.
   std::string_view image_bytes(const GltfValue& image);
@@ -49,12 +55,18 @@ class GltfFile {
   // view() and buffer() return the bytes of the buffer view or buffer whose index is the value `user`.
   std::string_view view(const GltfValue& user);
   std::string_view buffer(const GltfValue& user);
+  // Returns `byteLength` bytes of a buffer at `byteOffset`, as the members of `range` state.
+  std::string_view bytes_in(const GltfValue& range);
+  // Returns the content of a compressed buffer view.
+  std::string_view expanded(std::uint64_t index, const GltfValue& view, const GltfValue& extension);
 
   // Returns the bytes of a data: URI, or of the file that the URI names.
   std::string_view bytes_of(const GltfValue& uri);
   // Returns the elements of the buffer view that `place` names, at its byteOffset.
   GltfNumbers elements(const GltfValue& place, std::uint64_t count, std::string_view type,
                        const GltfValue& component_type, bool normalized);
+  // Sets the numbers of an accessor, integers that are not normalized.
+  void set_accessor(const GltfValue& user, std::vector<double> values);
   // Returns the numbers of a sparse accessor, or of one without a buffer view.
   GltfNumbers unpacked(const GltfValue& accessor, std::uint64_t count, std::string_view type,
                        bool normalized);
@@ -63,8 +75,12 @@ class GltfFile {
   std::deque<std::string> decoded_;           // contents of data: URIs
   std::map<std::string, std::string> files_;  // contents of other files, by name
   std::size_t file_bytes_ = 0;
-  std::deque<std::vector<double>> unpacked_;    // numbers of accessors that are not in a buffer
-  std::map<std::uint64_t, GltfNumbers> known_;  // the same, by accessor
+  std::map<std::uint64_t, std::string> expanded_;  // contents of compressed buffer views
+  std::uint64_t expanded_bytes_ = 0;
+  std::deque<std::vector<double>> unpacked_;                 // numbers of accessors that are not in a buffer
+  std::uint64_t unpacked_values_ = 0;                        // without those of Draco meshes
+  std::map<std::uint64_t, GltfNumbers> known_;               // the same, by accessor
+  std::set<std::vector<std::uint64_t>> decoded_primitives_;  // buffer views and accessors of primitives
   nlohmann::json document_;
   std::string_view binary_;  // BIN chunk of a .glb file
   std::vector<Buffer> buffers_;

@@ -162,6 +162,11 @@ std::uint64_t integer_or(const GltfValue& object, const char* key, std::uint64_t
   return value ? value->integer() : fallback;
 }
 
+std::optional<GltfValue> extension_of(const GltfValue& object, const char* name) {
+  const auto extensions = object.find("extensions");
+  return extensions ? extensions->find(name) : std::nullopt;
+}
+
 nlohmann::json parse_gltf(std::string_view text) {
   GltfBuilder builder;
   const bool complete = nlohmann::json::sax_parse(text.begin(), text.end(), &builder);

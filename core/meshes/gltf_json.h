@@ -40,6 +40,9 @@ class GltfValue {
 // value is not an integer of at least 0.
 std::uint64_t integer_or(const GltfValue& object, const char* key, std::uint64_t fallback);
 
+// Returns the extension `name` of an object, or nullopt if the object does not use it.
+std::optional<GltfValue> extension_of(const GltfValue& object, const char* name);
+
 // Parses the parts of a glTF document that models need, without extras. Throws InputError
 // if the text is not a valid JSON object, or if it has more than 32 levels or 1,000,000 values. Throws
 // Cancelled.

@@ -44,11 +44,6 @@ Vec3d color_or(const GltfValue& object, const char* key, const Vec3d& fallback, 
   return {channel(0), channel(1), channel(2)};
 }
 
-std::optional<GltfValue> extension_of(const GltfValue& object, const char* name) {
-  const auto extensions = object.find("extensions");
-  return extensions ? extensions->find(name) : std::nullopt;
-}
-
 class MaterialReader {
  public:
   explicit MaterialReader(GltfFile& file) : file_(file) {}

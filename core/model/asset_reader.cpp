@@ -31,14 +31,14 @@ TexelsPtr image_of(const MeshModel& model, std::size_t number) {
 TexelsPtr read_picture(Params& p, const AssetSource& source) {
   if (p.form({{"file"}, {"asset"}}) == 0) {
     const std::string name =
-        p.text("file", "EXR, HDR, PNG or JPEG file in or below the scene's folder; command line only.",
+        p.text("file", "EXR, HDR, PNG, JPEG or WebP file in or below the scene's folder; command line only.",
                kMostNameLength);
     const auto image = read_image_number(p);
     return read_named(p, "file", name, [&](const std::string& n) {
       return image ? image_of(*source.model_file(n), *image) : source.picture_file(n);
     });
   }
-  const std::string name = p.text("asset", "SHA-256 of an uploaded EXR, HDR, PNG or JPEG file.", 64);
+  const std::string name = p.text("asset", "SHA-256 of an uploaded EXR, HDR, PNG, JPEG or WebP file.", 64);
   const auto image = read_image_number(p);
   return read_named(p, "asset", name, [&](const std::string& n) {
     return image ? image_of(*source.model_asset(n), *image) : source.picture_asset(n);

@@ -31,8 +31,8 @@ void require_mesh_format(const std::string& bytes) {
   try {
     if (!ZipFile::is_zip(bytes)) mesh_format(bytes);
   } catch (const InputError& error) {
-    throw InputError("",
-                     error.problems().front().detail + "; an image must be an EXR, HDR, PNG or JPEG file");
+    throw InputError(
+        "", error.problems().front().detail + "; an image must be an EXR, HDR, PNG, JPEG or WebP file");
   }
 }
 

@@ -30,6 +30,7 @@ FormatNames names_of(PictureFormat format) {
     case PictureFormat::hdr: return {"hdr", "image/vnd.radiance"};
     case PictureFormat::png: return {"png", "image/png"};
     case PictureFormat::jpeg: return {"jpeg", "image/jpeg"};
+    case PictureFormat::webp: return {"webp", "image/webp"};
   }
   return {"", "application/octet-stream"};
 }
@@ -102,7 +103,7 @@ void add_assets_routes(Router& router, App& app) {
       .add("PUT", "/v1/assets/{sha256}", Scope::write, LogLevel::info, body,
            [&app](Request& request) { return put_asset(app, request); })
       .describe({.id = "keep_asset",
-                 .summary = "Stores a mesh (OBJ, PLY, STL, 3MF, glTF, ZIP) or an image (EXR, HDR, PNG, JPEG) "
+                 .summary = "Stores a mesh (OBJ, PLY, STL, 3MF, glTF, ZIP) or an image (EXR, HDR, PNG, JPEG, WebP) "
                             "under its SHA-256",
                  .description = "A ZIP archive contains one model and the files that the model names",
                  .parameters = {kAssetId},
@@ -128,6 +129,7 @@ void add_assets_routes(Router& router, App& app) {
                                {"image/vnd.radiance"},
                                {"image/png"},
                                {"image/jpeg"},
+                               {"image/webp"},
                                {"application/octet-stream"}}}}});
   router
       .add("DELETE", "/v1/assets/{sha256}", Scope::write, LogLevel::info,

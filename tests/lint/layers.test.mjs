@@ -36,12 +36,15 @@ const kText = new Set([...kCounted, ".in", ".md", ".json", ".yaml", ".yml", ".tx
 const kUnread = new Set(["package-lock.json", "LICENSE", ".git"]); // .git is a file in a worktree
 const kLibraries = [
   { name: "nlohmann", header: /^nlohmann\//, rooms: /^(core\/params|core\/meshes|server)\// },
+  { name: "meshoptimizer", header: /^meshoptimizer\.h$/, rooms: /^(core\/meshes|tests)\// },
+  { name: "draco", header: /^draco\//, rooms: /^(core\/meshes\/decoder|tests)\// },
   { name: "httplib", header: /^httplib\.h$/, rooms: /^(server\/http|tests)\// },
   { name: "libpng", header: /^png\.h$/, rooms: /^core\/image\/encode\// },
   { name: "turbojpeg", header: /^(turbojpeg|jpeglib)\.h$/, rooms: /^core\/image\/encode\// },
   { name: "pugixml", header: /^pugixml\.hpp$/, rooms: /^core\/meshes\// },
   { name: "libzip", header: /^zip\.h$/, rooms: /^core\/meshes\// },
   { name: "OpenImageIO", header: /^OpenImageIO\//, rooms: /^core\/image\/decode\/decoder\// },
+  { name: "libwebp", header: /^webp\//, rooms: /^(core\/image\/decode\/decoder|tests)\// },
   { name: "OpenEXR", header: /^(OpenEXR\/|Imath\/|Imf|Imath|openexr)/, rooms: /^core\/image\/encode\// },
 ];
 // Folders that exist on one machine only. After a word or a dot, the match would be part of a relative path.

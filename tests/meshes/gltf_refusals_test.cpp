@@ -74,7 +74,7 @@ TEST(Gltf, RejectsExternalFilesAndRequiredExtensions) {
                 HasSubstr("/buffers/0/uri: must be a data: URI in base64, because other files are not read "
                           "(got \"" +
                           std::string(uri)));
-  EXPECT_THAT(with(kMesh + R"("nodes":[{"mesh":0}],"extensionsRequired":["KHR_draco_mesh_compression"])"),
+  EXPECT_THAT(with(kMesh + R"("nodes":[{"mesh":0}],"extensionsRequired":["EXT_mesh_gpu_instancing"])"),
               HasSubstr("/extensionsRequired/0: must be an extension that does not change geometry"));
 }
 

@@ -147,7 +147,7 @@ class Gltf {
   template <class T>
   int add(const std::vector<T>& values, const std::string& type, int component,
           const std::string& more = "") {
-    const int width = type == "SCALAR" ? 1 : type.back() - '0';
+    const int width = type == "SCALAR" ? 1 : type == "MAT4" ? 16 : type.back() - '0';
     binary_.resize((binary_.size() + 3) / 4 * 4);
     const std::size_t first = binary_.size();
     for (const T& value : values) append(binary_, value);

@@ -17,15 +17,18 @@ using namespace std::string_view_literals;
 struct Signature {
   std::string_view bytes;
   PictureFormat format;
+  std::string_view after = {};  // bytes from byte 8
 };
 constexpr std::array kSignatures = {
     Signature{"\x76\x2f\x31\x01"sv, PictureFormat::exr}, Signature{"#?RADIANCE\n"sv, PictureFormat::hdr},
-    Signature{"#?RGBE\n"sv, PictureFormat::hdr}, Signature{"\x89PNG\r\n\x1a\n"sv, PictureFormat::png},
-    Signature{"\xff\xd8\xff"sv, PictureFormat::jpeg}};
+    Signature{"#?RGBE\n"sv, PictureFormat::hdr},         Signature{"\x89PNG\r\n\x1a\n"sv, PictureFormat::png},
+    Signature{"\xff\xd8\xff"sv, PictureFormat::jpeg},    Signature{"RIFF"sv, PictureFormat::webp, "WEBP"sv}};
 
 const Signature* signature_of(std::string_view bytes) {
-  const auto found = std::find_if(kSignatures.begin(), kSignatures.end(),
-                                  [&](const Signature& s) { return bytes.starts_with(s.bytes); });
+  const auto found = std::find_if(kSignatures.begin(), kSignatures.end(), [&](const Signature& s) {
+    return bytes.starts_with(s.bytes) &&
+           (s.after.empty() || bytes.substr(std::min<std::size_t>(8, bytes.size())).starts_with(s.after));
+  });
   return found == kSignatures.end() ? nullptr : &*found;
 }
 
@@ -50,6 +53,7 @@ const char* name_of(PictureFormat format) {
     case PictureFormat::hdr: return "HDR";
     case PictureFormat::png: return "PNG";
     case PictureFormat::jpeg: return "JPEG";
+    case PictureFormat::webp: return "WebP";
   }
   return "";
 }
@@ -58,8 +62,8 @@ bool is_picture(std::string_view bytes) { return signature_of(bytes) != nullptr;
 
 PictureFormat picture_format(std::string_view bytes) {
   if (const Signature* const known = signature_of(bytes)) return known->format;
-  throw InputError("", "must be an EXR, Radiance HDR, PNG or JPEG file (got " + std::to_string(bytes.size()) +
-                           " bytes of another format)");
+  throw InputError("", "must be an EXR, Radiance HDR, PNG, JPEG or WebP file (got " +
+                           std::to_string(bytes.size()) + " bytes of another format)");
 }
 
 Texels read_picture(std::string_view bytes, const PictureLimits& limits) {
@@ -67,7 +71,7 @@ Texels read_picture(std::string_view bytes, const PictureLimits& limits) {
   try {
     Texels picture = decode_in_process(inspect_picture(bytes, format, limits));
     check_texels(picture);
-    picture.from_srgb = format == PictureFormat::png || format == PictureFormat::jpeg;
+    picture.from_srgb = format != PictureFormat::exr && format != PictureFormat::hdr;
     return picture;
   } catch (const InputError& error) {
     throw InputError("", name_of(format) + (": " + error.problems().front().detail));

@@ -50,7 +50,7 @@ struct PictureLimits {
 // Maximum value of a channel of a texel.
 inline constexpr float kMaxTexel = 1e9f;
 
-enum class PictureFormat { exr, hdr, png, jpeg };
+enum class PictureFormat { exr, hdr, png, jpeg, webp };
 
 // Returns the name of a format for messages: "EXR".
 const char* name_of(PictureFormat format);
@@ -60,9 +60,9 @@ bool is_picture(std::string_view bytes);
 // Returns the format of a file. Throws InputError (pointer "") if the signature is unknown.
 PictureFormat picture_format(std::string_view bytes);
 
-// Reads an OpenEXR, Radiance HDR, PNG or JPEG file. The first bytes determine the format. EXR and HDR are
-// linear. PNG and JPEG are decoded from sRGB. One channel is grey. A second or fourth channel is alpha. The
-// same bytes always give the same texels. The file is decoded in a separate process
+// Reads an OpenEXR, Radiance HDR, PNG, JPEG or WebP file. The first bytes determine the format. EXR and HDR
+// are linear. PNG, JPEG and WebP are decoded from sRGB. One channel is grey. A second or fourth channel is
+// alpha. The same bytes always give the same texels. The file is decoded in a separate process
 // (core/image/decode/decode_process.h).
 //
 // The size in the header is checked before decoding. Texels must be finite and in 0 to kMaxTexel. Throws

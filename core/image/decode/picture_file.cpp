@@ -11,6 +11,7 @@ PictureFile inspect_picture(std::string_view bytes, PictureFormat format, const 
     case PictureFormat::hdr: inspect_hdr(bytes, file); break;
     case PictureFormat::png: inspect_png(bytes, file); break;
     case PictureFormat::jpeg: inspect_jpeg(bytes, file); break;
+    case PictureFormat::webp: inspect_webp(bytes, file); break;
   }
   if (std::string problem = limits.problem_of(file.width, file.height, file.channels); !problem.empty())
     throw InputError("", std::move(problem));

@@ -38,6 +38,7 @@ PictureFile inspect_picture(std::string_view bytes, PictureFormat format, const 
 // Read the header and set all members but the format. Throw InputError (pointer "") if the file is damaged.
 void inspect_png(std::string_view bytes, PictureFile& file);
 void inspect_jpeg(std::string_view bytes, PictureFile& file);
+void inspect_webp(std::string_view bytes, PictureFile& file);
 void inspect_exr(std::string_view bytes, PictureFile& file);
 void inspect_hdr(std::string_view bytes, PictureFile& file);
 

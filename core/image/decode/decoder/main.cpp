@@ -3,12 +3,7 @@
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
-#include <signal.h>
-#include <sys/mman.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
-#include <sys/stat.h>
-#include <unistd.h>
+#include <webp/decode.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -19,20 +14,14 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/decoder_program.h"
 #include "core/image/decode/decoder/protocol.h"
 #include "core/math/elementary.h"
 
 namespace {
 
 using orrery::DecodedHeader;
-
-void write_all(std::span<const std::byte> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = write(STDOUT_FILENO, bytes.data(), bytes.size());
-    if (written <= 0) std::_Exit(1);  // the reader has closed the pipe
-    bytes = bytes.subspan(static_cast<std::size_t>(written));
-  }
-}
+using orrery::write_all;
 
 [[noreturn]] void fail(std::string text) {
   constexpr std::size_t kMaxText = 500;
@@ -57,42 +46,6 @@ void write_all(std::span<const std::byte> bytes) {
   for (const std::string_view name : kNames)
     if (const std::size_t at = text.find(name); at != text.npos) text.erase(at, name.size());
   fail("image is damaged: " + (text.empty() ? "decoder cannot read it" : text));
-}
-
-// Returns the writable memory that this process has mapped, in bytes, as RLIMIT_DATA counts it.
-[[maybe_unused]] rlim_t mapped_data() {
-  std::FILE* const file = std::fopen("/proc/self/statm", "r");
-  unsigned long pages = 0;
-  const bool read = file && std::fscanf(file, "%*u %*u %*u %*u %*u %lu", &pages) == 1;
-  if (file) std::fclose(file);
-  return read ? pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) : 0;
-}
-
-void limit_process() {
-  constexpr rlim_t kMaxSeconds = 300;
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  close_range(STDERR_FILENO + 1, ~0U, 0);
-  const rlimit seconds{kMaxSeconds, kMaxSeconds}, none{0, 0};
-  setrlimit(RLIMIT_CPU, &seconds);
-  setrlimit(RLIMIT_CORE, &none);
-}
-
-// Allows `bytes` in addition to kDecoderRoom and the memory that is already mapped.
-void limit_memory([[maybe_unused]] std::uint64_t bytes) {
-#ifndef ORRERY_SANITIZED  // the sanitizer's own memory counts as data
-  const rlim_t most = mapped_data() + orrery::kDecoderRoom + bytes;
-  const rlimit data{most, most};
-  setrlimit(RLIMIT_DATA, &data);
-#endif
-}
-
-std::span<std::byte> map_input() {
-  struct stat status {};
-  if (fstat(STDIN_FILENO, &status) != 0 || status.st_size <= 0) fail("input is missing");
-  const auto size = static_cast<std::size_t>(status.st_size);
-  void* const start = mmap(nullptr, size, PROT_READ, MAP_SHARED, STDIN_FILENO, 0);
-  if (start == MAP_FAILED) fail("cannot map the input");
-  return {static_cast<std::byte*>(start), size};
 }
 
 // Returns the linear light of each sRGB code (IEC 61966-2-1).
@@ -166,13 +119,42 @@ void decode_srgb(OIIO::ImageInput& input) {
   decode<Code>(input, [light = light_of_codes<Code>()](Code code) { return light[code]; });
 }
 
+// Decodes a WebP file. The reader of OpenImageIO would multiply colours by alpha.
+void decode_webp(std::span<const std::byte> bytes) {
+  const auto* const data = reinterpret_cast<const std::uint8_t*>(bytes.data());
+  WebPBitstreamFeatures found;
+  if (WebPGetFeatures(data, bytes.size(), &found) != VP8_STATUS_OK) fail_damaged("");
+  const std::size_t channels = found.has_alpha ? 4 : 3;
+  const auto stride = channels * static_cast<std::size_t>(found.width);
+  std::vector<std::uint8_t> codes(stride * static_cast<std::size_t>(found.height));
+  const auto decode_into = found.has_alpha ? WebPDecodeRGBAInto : WebPDecodeRGBInto;
+  if (!decode_into(data, bytes.size(), codes.data(), codes.size(), static_cast<int>(stride)))
+    fail_damaged("");
+  const DecodedHeader header{0, static_cast<std::uint32_t>(found.width),
+                             static_cast<std::uint32_t>(found.height), static_cast<std::uint32_t>(channels)};
+  write_all(std::as_bytes(std::span(&header, 1)));
+  const std::vector<float> light = light_of_codes<std::uint8_t>();
+  std::vector<float> texels(stride);
+  for (std::size_t row = 0; row < codes.size(); row += stride) {
+    for (std::size_t i = 0; i < stride; ++i)
+      texels[i] = i % channels == 3 ? alpha_of(codes[row + i]) : light[codes[row + i]];
+    write_all(std::as_bytes(std::span(texels)));
+  }
+}
+
 void run(const char* plugin, std::uint64_t memory_bytes) {
+  const std::span<std::byte> bytes = orrery::map_input();
+  if (bytes.empty()) fail("input is missing");
+  if (plugin == std::string_view("webp")) {
+    orrery::limit_memory(orrery::kDecoderRoom + memory_bytes);
+    return decode_webp(bytes);
+  }
   OIIO::attribute("threads", 1);
   OIIO::attribute("exr_threads", -1);
-  const std::span<std::byte> bytes = map_input();
   OIIO::Filesystem::IOMemReader reader(bytes.data(), bytes.size());
   const auto input = OIIO::ImageInput::create(plugin, false, nullptr, &reader, "");
-  limit_memory(memory_bytes);  // the reader's thread has started, and no byte is parsed yet
+  orrery::limit_memory(orrery::kDecoderRoom +
+                       memory_bytes);  // the reader's thread has started, and no byte is parsed yet
   OIIO::ImageSpec spec, how;
   how.attribute("oiio:UnassociatedAlpha", 1);
   if (!input || !input->set_ioproxy(&reader) || !input->open("picture", spec, how))
@@ -194,7 +176,8 @@ void run(const char* plugin, std::uint64_t memory_bytes) {
 
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
-  limit_process();
+  constexpr rlim_t kMaxSeconds = 300;
+  orrery::limit_process(kMaxSeconds);
   try {
     run(argv[1], std::strtoull(argv[2], nullptr, 10));
   } catch (const std::bad_alloc&) {

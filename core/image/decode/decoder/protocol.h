@@ -6,10 +6,10 @@ namespace orrery {
 
 // Protocol between read_picture() and the program orrery-decode. The command line is
 //  orrery-decode PLUGIN BYTES
-// PLUGIN is the name of an OpenImageIO reader. BYTES is the memory that the program may allocate for this
-// image. Standard input is the image file. The program writes a DecodedHeader to standard output, then either
-// `text_bytes` of an error message or `width` x `height` texels. A texel is linear light: red, green and blue
-// as float, and alpha if there are four channels. Rows are ordered from top to bottom.
+// PLUGIN is "webp" or the name of an OpenImageIO reader. BYTES is the memory that the program may allocate
+// for this image. Standard input is the image file. The program writes a DecodedHeader to standard output,
+// then either `text_bytes` of an error message or `width` x `height` texels. A texel is linear light: red,
+// green and blue as float, and alpha if there are four channels. Rows are ordered from top to bottom.
 struct DecodedHeader {
   std::uint32_t text_bytes;  // 0 if the image was decoded
   std::uint32_t width, height;
