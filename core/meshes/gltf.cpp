@@ -5,6 +5,7 @@
 #include "core/meshes/gltf_deformation.h"
 #include "core/meshes/gltf_file.h"
 #include "core/meshes/gltf_materials.h"
+#include "core/meshes/gltf_studio.h"
 #include "core/meshes/gltf_transform.h"
 #include "core/meshes/text.h"
 
@@ -17,12 +18,12 @@ namespace {
 constexpr std::size_t kMaxPlaced = 250'000;
 constexpr std::size_t kMaxNamed = 20;  // extensions that notes name
 
-// Extensions of geometry that are supported.
-constexpr std::string_view kGeometry[] = {"KHR_mesh_quantization", "EXT_meshopt_compression",
-                                          "KHR_draco_mesh_compression"};
+// Extensions that are supported, except those of materials.
+constexpr std::string_view kSupported[] = {"KHR_mesh_quantization", "EXT_meshopt_compression",
+                                           "KHR_draco_mesh_compression", "KHR_lights_punctual"};
 
 bool is_supported(std::string_view extension) {
-  return std::find(std::begin(kGeometry), std::end(kGeometry), extension) != std::end(kGeometry);
+  return std::find(std::begin(kSupported), std::end(kSupported), extension) != std::end(kSupported);
 }
 
 // Returns true if the extension does not change geometry.
@@ -50,18 +51,18 @@ class SceneReader {
       if (!list.empty()) list.resize(mesh_.positions.size(), filler);
     });
     add_notes();
-    return {std::move(mesh_), std::move(materials_.materials), std::move(materials_.images)};
+    model_.mesh = std::move(mesh_);
+    model_.materials = std::move(materials_.materials);
+    model_.images = std::move(materials_.images);
+    return std::move(model_);
   }
 
  private:
   // Names the contents that are not modelled.
   void add_notes() {
     mesh_.notes = std::move(materials_.notes);
-    constexpr std::pair<const char*, const char*> kLists[] = {{"animations", "animations"},
-                                                              {"cameras", "cameras"}};
-    for (const auto& [key, what] : kLists)
-      if (const auto list = file_.root().find(key); list && list->size() > 0)
-        mesh_.notes.push_back(grouped(list->size()) + " " + what + " are not modelled");
+    if (const auto list = file_.root().find("animations"); list && list->size() > 0)
+      mesh_.notes.push_back(grouped(list->size()) + " animations are not modelled");
     if (without_surface_ > 0)
       mesh_.notes.push_back(grouped(without_surface_) + " primitives of points or lines are not rendered");
     if (const auto used = file_.root().find("extensionsUsed"))
@@ -112,6 +113,7 @@ class SceneReader {
     }
     for (const std::size_t index : order) {
       const GltfValue node = nodes.item(index);
+      add_gltf_studio(file_.root(), node, *world_[index], model_);
       const auto mesh_index = node.find("mesh");
       if (!mesh_index) continue;
       const GltfValue mesh = file_.root().at("meshes").item(mesh_index->integer());
@@ -318,6 +320,7 @@ class SceneReader {
   const MeshLimits& limits_;
   TriangleMesh mesh_;
   GltfMaterials materials_;
+  MeshModel model_;                                  // cameras and lights
   std::vector<std::optional<Affined>> world_;        // transforms of the nodes, once computed
   std::map<std::uint64_t, JointTransforms> joints_;  // by skin
   std::size_t placed_ = 0, without_surface_ = 0;

@@ -16,9 +16,9 @@ constexpr std::size_t kMaxValues = 1'000'000;  // a value takes 16 to 80 bytes o
 
 constexpr std::string_view kTopKeys[] = {"asset", "scene", "scenes", "nodes", "meshes", "accessors",
                                          "bufferViews", "buffers", "extensionsRequired", "materials",
-                                         "textures", "images", "samplers",
+                                         "textures", "images", "samplers", "cameras", "skins", "extensions",
                                          // Only for notes:
-                                         "extensionsUsed", "animations", "skins", "cameras"};
+                                         "extensionsUsed", "animations"};
 
 // Builds the document from parser events. Skips the values that neither geometry nor notes need. nlohmann's
 // callback parser would take quadratic time, because it searches a container for discarded values after each

@@ -58,10 +58,28 @@ struct ModelMaterial {
   bool unlit = false;
 };
 
+// Camera of a model, in the axes of the file.
+struct ModelCamera {
+  std::string name;
+  Vec3d eye, direction, up;  // directions are unit
+  double fov_degrees = 0;    // vertical field of view; 0: orthographic
+  double height = 0;         // height of an orthographic view
+};
+
+// Light of a model, in the axes of the file: see KHR_lights_punctual (Khronos).
+struct ModelLight {
+  enum class Kind { directional, point, spot } kind;
+  Vec3d position, direction;                     // direction in which the light shines, unit
+  Vec3d intensity;                               // candela; of a directional light: lux
+  double inner_degrees = 0, outer_degrees = 45;  // half angles of a spot
+};
+
 struct MeshModel {
   TriangleMesh mesh;
   std::vector<ModelMaterial> materials;
   std::vector<ModelImage> images;
+  std::vector<ModelCamera> cameras = {};
+  std::vector<ModelLight> lights = {};
   std::string unit = {};  // name of the unit of lengths in the file, or empty if the format has none
   MeshFormat format = MeshFormat::obj;  // format of the file, or of the model in an archive
 };

@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
+#include "core/base/error.h"
 #include "core/base/number.h"
 #include "core/base/shorten.h"
 #include "core/math/angles.h"
@@ -21,6 +23,7 @@ constexpr int kSize = 512;
 constexpr double kFieldOfView = 30, kMargin = 0.05, kCreaseDegrees = 30, kMaxError = 0.02;
 // Radiance of the surroundings, and intensity and place of the key light relative to the camera.
 constexpr double kSurroundings = 0.6, kKeyLight = 0.5, kKeyAzimuth = -40, kKeyElevation = 50, kKeyWidth = 15;
+constexpr double kFill = 0.02;  // radiance of the surroundings with the lights of the file
 constexpr double kModelReflectance = 0.6;
 
 struct NamedDirection {
@@ -53,8 +56,10 @@ constexpr std::array<std::string_view, 2> kProjections{"perspective", "orthograp
 constexpr std::array<std::string_view, 3> kGrounds{"none", "shadow", "grid"};  // in the order of Ground
 constexpr std::array<std::string_view, 2> kFits{"view", "turn"};               // in the order of Fit
 
-enum Parameter : std::size_t { kFrom, kUp, kProjection, kGround, kFit };
-constexpr std::array<ViewParameter, 5> kParameters{
+constexpr std::array<std::string_view, 2> kLights{"studio", "file"};
+
+enum Parameter : std::size_t { kFrom, kUp, kProjection, kGround, kFit, kCamera, kLight };
+constexpr std::array<ViewParameter, 7> kParameters{
     {{"from", "DIRECTION",
       "Direction from the model to the camera: front, right, back, left, top, bottom, iso, or azimuth and "
       "elevation in degrees.",
@@ -63,7 +68,9 @@ constexpr std::array<ViewParameter, 5> kParameters{
      {"projection", "NAME", "Projection of the camera.", "perspective", kProjections},
      {"ground", "NAME", "Plane below the model; shadow: it shows nothing but shadows.", "none", kGrounds},
      {"fit", "NAME", "Content of the image: the model as seen, or the model from every azimuth.", "view",
-      kFits}}};
+      kFits},
+     {"camera", "NAME", "Camera of a glTF file, by name or number from 0, instead of a framed view.", ""},
+     {"light", "NAME", "Light of a studio, or the lights of a glTF file.", "studio", kLights}}};
 
 ViewDirection read_direction(Params& p) {
   const ViewParameter& row = kParameters[kFrom];
@@ -159,6 +166,68 @@ Vec3d key_direction(const StudioAxes& axes, const ViewDirection& from) {
   return (axes.front * turn.cosine + axes.right * turn.sine) * rise.cosine + axes.up * rise.sine;
 }
 
+// Returns the camera of the file that the options name, or null.
+const ModelCamera* camera_of(const MeshModel& model, const ViewOptions& options) {
+  if (options.camera.empty()) return nullptr;
+  for (std::size_t i = 0; i < model.cameras.size(); ++i)
+    if (model.cameras[i].name == options.camera || std::to_string(i) == options.camera)
+      return &model.cameras[i];
+  std::string names;
+  for (const ModelCamera& camera : model.cameras) names += (names.empty() ? "" : ", ") + camera.name;
+  throw InputError(
+      "/camera", "must be a camera of the file: " + (names.empty() ? "it has none" : shortened(names, 200)) +
+                     " (got \"" + shortened(options.camera, 40) + "\")");
+}
+
+// `corners`: of the mesh, near which the camera focuses.
+Json camera_json(const ModelCamera& camera, std::span<const Vec3d> corners) {
+  Boundsd bounds;
+  for (const Vec3d& corner : corners) bounds.include(corner);
+  const double ahead = dot((bounds.lo + bounds.hi) * 0.5 - camera.eye, camera.direction);
+  Json json{{"type", camera.fov_degrees > 0 ? "perspective" : "orthographic"},
+            {"eye", numbers(camera.eye)},
+            {"look_at", numbers(camera.eye + camera.direction * (ahead > 0 ? ahead : 1))},
+            {"up", numbers(camera.up)}};
+  if (camera.fov_degrees > 0)
+    json["fov_degrees"] = camera.fov_degrees;
+  else
+    json["height"] = camera.height;
+  return json;
+}
+
+// A white surface that faces a light of I candela at a distance of d has the radiance I / (pi d^2).
+Json light_json(const ModelLight& light) {
+  const Json intensity = numbers(light.intensity / std::numbers::pi);
+  if (light.kind == ModelLight::Kind::directional)
+    return {
+        {"type", "directional"}, {"direction_to_light", numbers(-light.direction)}, {"intensity", intensity}};
+  Json json{{"type", light.kind == ModelLight::Kind::point ? "point" : "spot"},
+            {"position", numbers(light.position)},
+            {"intensity", intensity},
+            {"attenuation", {0, 0, 1}},
+            {"clamp_to_one", false}};
+  if (light.kind == ModelLight::Kind::point) return json;
+  json["direction"] = numbers(light.direction);
+  json["inner_degrees"] = light.inner_degrees;
+  json["outer_degrees"] = light.outer_degrees;
+  return json;
+}
+
+void add_light(Json& scene, const MeshModel& model, const ViewOptions& options, const StudioAxes& axes) {
+  scene["environment"] = {{"type", "constant"},
+                          {"radiance", numbers(Vec3d(options.file_light ? kFill : kSurroundings))}};
+  if (!options.file_light) {
+    scene["lights"] = {{{"type", "directional"},
+                        {"direction_to_light", numbers(key_direction(axes, options.from))},
+                        {"intensity", numbers(Vec3d(kKeyLight))},
+                        {"angle_degrees", kKeyWidth}}};
+    return;
+  }
+  if (model.lights.empty())
+    throw InputError("/light", "must be studio: the file has no lights (got \"file\")");
+  for (const ModelLight& light : model.lights) scene["lights"].push_back(light_json(light));
+}
+
 }  // namespace
 
 Vec3d usual_up(MeshFormat format) {
@@ -182,6 +251,8 @@ ViewOptions read_view_options(const Document& document) {
     options.orthographic = choice(kProjection) == 1;
     options.ground = static_cast<ViewOptions::Ground>(choice(kGround));
     options.fit = static_cast<Fit>(choice(kFit));
+    options.camera = p.text(kParameters[kCamera].key, kParameters[kCamera].help, 200, "");
+    options.file_light = choice(kLight) == 1;
   });
   return options;
 }
@@ -206,13 +277,10 @@ Json view_scene(const MeshModel& model, const ModelReference& reference, const V
                                                  .margin = kMargin,
                                                  .fit = options.fit});
   Json scene{{"version", 1}, {"title", shortened(reference.title, 200)}};
-  scene["camera"] = camera_json(framing, options.orthographic);
+  const ModelCamera* const camera = camera_of(model, options);
+  scene["camera"] = camera ? camera_json(*camera, corners) : camera_json(framing, options.orthographic);
   scene["image"] = {{"width", width}, {"height", height}};
-  scene["environment"] = {{"type", "constant"}, {"radiance", numbers(Vec3d(kSurroundings))}};
-  scene["lights"] = {{{"type", "directional"},
-                      {"direction_to_light", numbers(key_direction(axes, options.from))},
-                      {"intensity", numbers(Vec3d(kKeyLight))},
-                      {"angle_degrees", kKeyWidth}}};
+  add_light(scene, model, options, axes);
   add_model(scene, model, reference, {{"type", "lambert"}, {"reflectance", kModelReflectance}},
             kCreaseDegrees);
   add_ground(scene, options, axes, corners, framing.eye);

@@ -22,6 +22,8 @@ struct ViewOptions {
   bool orthographic = false;
   Ground ground = Ground::none;
   Fit fit = Fit::view;
+  std::string camera;       // name or number of a camera of the file; empty: framed exactly
+  bool file_light = false;  // lights of the file, otherwise those of a studio
 };
 
 // Option of a view: query parameter and flag.
@@ -32,7 +34,8 @@ struct ViewParameter {
 };
 std::span<const ViewParameter> view_parameters();
 
-// Reads the options from an object of strings. Throws InputError with pointers such as "/up".
+// Reads the options from an object of strings, of which `camera` is not checked. Throws InputError with
+// pointers such as "/up".
 ViewOptions read_view_options(const Document& document);
 
 // Returns the request with an error budget of 0.02 if it has neither samples nor a budget.
@@ -50,7 +53,7 @@ Vec3d usual_up(MeshFormat format);
 // Returns a scene with the model, a camera that frames it exactly in an image of this size, uniform light
 // from all directions and a soft key light from the upper left of the camera. Meshes without normals are
 // smooth across edges of less than 30 degrees. Models without materials are grey. REQUIRES: the mesh has
-// triangles.
+// triangles. Throws InputError (pointer "/camera" or "/light") if the model lacks what the options name.
 nlohmann::ordered_json view_scene(const MeshModel& model, const ModelReference& reference,
                                   const ViewOptions& options, int width, int height);
 

@@ -54,6 +54,8 @@ nlohmann::ordered_json inspection_json(const ModelFile& model, const MeshInspect
           {"vertex_colors", !model.model->mesh.colors.empty()},
           {"materials", material_names(*model.model)},
           {"images", model.model->images.size()},
+          {"cameras", model.model->cameras.size()},
+          {"lights", model.model->lights.size()},
           {"notes", model.model->mesh.notes}};
 }
 
