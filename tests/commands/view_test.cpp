@@ -97,11 +97,34 @@ TEST_F(ViewCommand, ReadsBuffersBesideModel) {
 }
 
 TEST_F(ViewCommand, WarnsAboutContentsThatAreNotModelled) {
-  const Outcome result =
-      run("view " + write("a.obj", "mtllib a.mtl\nusemtl a\n" + test::obj_of(test::cube())) +
-          " --samples 1 --width 8 --height 8 -o -");
+  const Outcome result = run("view " + write("a.obj", "l 1 2\n" + test::obj_of(test::cube())) +
+                             " --samples 1 --width 8 --height 8 -o -");
   EXPECT_EQ(result.status, 0);
-  EXPECT_EQ(result.err, "orrery: warning: " + file("a.obj") + ": materials are not modelled\n");
+  EXPECT_EQ(result.err, "orrery: warning: " + file("a.obj") + ": 1 lines are not rendered\n");
+}
+
+TEST_F(ViewCommand, ReadsMaterialLibrariesInTheFolderOfTheModel) {
+  fs::create_directory(folder_ / "models");
+  write("a.mtl", "newmtl red\nKd 0.5 0 0\n");
+  const auto base_color_with = [&](const std::string& library) {
+    const std::string text = "mtllib " + library + "\nusemtl red\n" + test::obj_of(test::cube());
+    const Outcome result = run("view " + write("models/a.obj", text) + " --print-scene -o -");
+    EXPECT_EQ(result.status, 0) << result.err;
+    const auto material = nlohmann::json::parse(result.out).at("materials");
+    return material.contains("red") ? material.at("red").at("base_color") : nlohmann::json();
+  };
+  EXPECT_EQ(base_color_with("../a.mtl"), nlohmann::json());
+  write("models/a.mtl", "newmtl red\nKd 0 0.5 0\n");
+  EXPECT_EQ(base_color_with("C:\\programs\\a.mtl"), nlohmann::json({0, 0.5, 0}));
+}
+
+TEST_F(ViewCommand, TakesZAsUpIn3mfFiles) {
+  const auto camera_of = [&](const std::string& name, const std::string& bytes) {
+    return nlohmann::json::parse(run("view " + write(name, bytes) + " --print-scene -o -").out).at("camera");
+  };
+  const nlohmann::json from_stl = camera_of("a.stl", test::binary_stl_of(test::cube()));
+  EXPECT_EQ(camera_of("a.3mf", test::three_mf_of(test::cube())), from_stl);
+  EXPECT_NE(camera_of("a.obj", test::obj_of(test::cube())), from_stl);
 }
 
 // From below, the plane would hide the model. Triangles without area are not drawn and do not count.
