@@ -18,9 +18,9 @@ namespace orrery {
 namespace {
 
 constexpr std::size_t kMaxLibraries = 100;
-constexpr std::size_t kMaxMtlNotes = 20;  // notes of each kind
-constexpr double kMaxEmittance = 1e6;     // value of Ke; larger ones are reduced
-constexpr double kMaxMapScale = 1e5;      // magnitude of -s, -o and -bm
+constexpr std::size_t kMaxMtlNotes = 8;  // notes of each kind
+constexpr double kMaxEmittance = 1e6;    // value of Ke; larger ones are reduced
+constexpr double kMaxMapScale = 1e5;     // magnitude of -s, -o and -bm
 constexpr std::size_t kNameCharacters = 80;
 
 // Map of a material in the file.
@@ -113,7 +113,7 @@ class LibraryReader {
     // Ambient light has no counterpart. The index of refraction has none for opaque surfaces.
     for (const std::string_view ignored : {"ka", "map_ka", "ni"})
       if (is_keyword(key, ignored)) return;
-    if (unknown_.size() <= kMaxMtlNotes) unknown_.insert(excerpt(key));
+    if (unknown_.size() < kMaxMtlNotes) unknown_.insert(excerpt(key));
   }
 
   double read_number(std::string_view key) {

@@ -29,7 +29,7 @@ TEST_F(View, RendersUploadedModel) {
   EXPECT_EQ(posted->get_header_value("Orrery-Asset-Id"), sha256_hex(kTetrahedron));
   EXPECT_FALSE(posted->has_header("Orrery-Model-Notes"));
   EXPECT_EQ(post(kSmall, "usemtl red\n" + kTetrahedron + "l 1 2\n")->get_header_value("Orrery-Model-Notes"),
-            "materials are not modelled; 1 lines are not rendered");
+            "material \"red\" is not defined; 1 lines are not rendered");
   const auto by_url = client_.Get(path());
   ASSERT_TRUE(by_url && by_url->status == 200);
   EXPECT_EQ(by_url->body, posted->body);
