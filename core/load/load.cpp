@@ -71,11 +71,11 @@ void read_camera(Params& p, Scene& scene) {
 class CachedAssetSource final : public AssetSource {
  public:
   explicit CachedAssetSource(const AssetSource& from) : from_(from) {}
-  MeshModelPtr model_file(const std::string& name) const override {
-    return once(files_, name, [&] { return from_.model_file(name); });
+  MeshModelPtr model_file(const std::string& name, const std::optional<ModelPose>& pose) const override {
+    return once(files_, {name, pose}, [&] { return from_.model_file(name, pose); });
   }
-  MeshModelPtr model_asset(const std::string& sha256) const override {
-    return once(assets_, sha256, [&] { return from_.model_asset(sha256); });
+  MeshModelPtr model_asset(const std::string& sha256, const std::optional<ModelPose>& pose) const override {
+    return once(assets_, {sha256, pose}, [&] { return from_.model_asset(sha256, pose); });
   }
   TexelsPtr picture_file(const std::string& name) const override {
     return once(picture_files_, name, [&] { return from_.picture_file(name); });
@@ -85,13 +85,16 @@ class CachedAssetSource final : public AssetSource {
   }
 
  private:
-  template <class Asset, class Read>
-  static const Asset& once(std::map<std::string, Asset>& assets, const std::string& name, const Read& read) {
+  using PosedName = std::pair<std::string, std::optional<ModelPose>>;
+
+  template <class Name, class Asset, class Read>
+  static const Asset& once(std::map<Name, Asset>& assets, const std::type_identity_t<Name>& name,
+                           const Read& read) {
     const auto known = assets.find(name);
     return known != assets.end() ? known->second : assets.emplace(name, read()).first->second;
   }
   const AssetSource& from_;
-  mutable std::map<std::string, MeshModelPtr> files_, assets_;
+  mutable std::map<PosedName, MeshModelPtr> files_, assets_;
   mutable std::map<std::string, TexelsPtr> picture_files_, picture_assets_;
 };
 

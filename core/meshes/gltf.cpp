@@ -2,6 +2,7 @@
 
 #include "core/base/task_scope.h"
 #include "core/meshes/formats.h"
+#include "core/meshes/gltf_animation.h"
 #include "core/meshes/gltf_deformation.h"
 #include "core/meshes/gltf_file.h"
 #include "core/meshes/gltf_materials.h"
@@ -35,8 +36,9 @@ bool is_harmless(std::string_view extension) {
 
 class SceneReader {
  public:
-  SceneReader(std::string_view bytes, const MeshLimits& limits, const ReadNearby& nearby)
-      : file_(bytes, nearby), limits_(limits) {}
+  SceneReader(std::string_view bytes, const MeshLimits& limits, const ReadNearby& nearby,
+              const std::optional<ModelPose>& pose)
+      : file_(bytes, nearby), limits_(limits), pose_(pose) {}
 
   MeshModel read() {
     if (const auto required = file_.root().find("extensionsRequired"))
@@ -46,6 +48,7 @@ class SceneReader {
           extension.fail("must be an extension that does not change geometry (got " +
                          excerpt(extension.text()) + ")");
     materials_ = read_gltf_materials(file_);
+    if (pose_) node_poses_ = read_pose(file_, *pose_);
     place(file_.root().at("nodes"));
     for_each_attribute([&](auto& list, auto filler) {
       if (!list.empty()) list.resize(mesh_.positions.size(), filler);
@@ -61,8 +64,9 @@ class SceneReader {
   // Names the contents that are not modelled.
   void add_notes() {
     mesh_.notes = std::move(materials_.notes);
-    if (const auto list = file_.root().find("animations"); list && list->size() > 0)
-      mesh_.notes.push_back(grouped(list->size()) + " animations are not modelled");
+    const auto list = file_.root().find("animations");
+    if (list && list->size() > 0 && !pose_)
+      mesh_.notes.push_back("the model is at rest; number of animations: " + grouped(list->size()));
     if (without_surface_ > 0)
       mesh_.notes.push_back(grouped(without_surface_) + " primitives of points or lines are not rendered");
     if (const auto used = file_.root().find("extensionsUsed"))
@@ -139,7 +143,7 @@ class SceneReader {
       stack.pop_back();
       const GltfValue node = nodes.item(visit.node);
       if (world_[visit.node]) node.fail("nodes must form a tree (got this node twice)");
-      const Affined world = compose(visit.world_from_parent, transform_of(node));
+      const Affined world = compose(visit.world_from_parent, transform_of(node, change_of(visit.node)));
       world_[visit.node] = world;
       order.push_back(visit.node);
       const std::size_t first = stack.size();
@@ -149,12 +153,20 @@ class SceneReader {
     return order;
   }
 
+  // Returns the members of a node that the animation changes, or null.
+  const NodePose* change_of(std::size_t node) const {
+    const auto found = node_poses_.find(node);
+    return found == node_poses_.end() ? nullptr : &found->second;
+  }
+
   MeshPose pose_of(std::size_t index, const GltfValue& node, const GltfValue& mesh) {
     MeshPose pose{*world_[index], {}, nullptr};
     auto weights = node.find("weights");
     if (!weights) weights = mesh.find("weights");
     for (std::size_t i = 0; weights && i < weights->size(); ++i)
       pose.weights.push_back(weights->item(i).number());
+    if (const NodePose* const change = change_of(index); change && change->weights)
+      pose.weights = *change->weights;
     if (const auto skin = node.find("skin")) pose.joints = &joints_of(*skin);
     return pose;
   }
@@ -318,6 +330,8 @@ class SceneReader {
 
   GltfFile file_;
   const MeshLimits& limits_;
+  const std::optional<ModelPose>& pose_;
+  GltfPose node_poses_;
   TriangleMesh mesh_;
   GltfMaterials materials_;
   MeshModel model_;                                  // cameras and lights
@@ -328,8 +342,9 @@ class SceneReader {
 
 }  // namespace
 
-MeshModel read_gltf(std::string_view bytes, const MeshLimits& limits, const ReadNearby& nearby) {
-  return SceneReader(bytes, limits, nearby).read();
+MeshModel read_gltf(std::string_view bytes, const MeshLimits& limits, const ReadNearby& nearby,
+                    const std::optional<ModelPose>& pose) {
+  return SceneReader(bytes, limits, nearby, pose).read();
 }
 
 }  // namespace orrery

@@ -23,11 +23,10 @@ Vec3d three_or(const GltfValue& node, const char* key, const Vec3d& fallback) {
 }
 
 // Returns the rotation by a quaternion (x, y, z, w) of any length. Throws InputError if the quaternion is 0.
-Affined rotation_of(const GltfValue& value) {
-  auto q = numbers_of<4>(value);
+Affined rotation_of(std::array<double, 4> q, const GltfValue& place) {
   double largest = 0;
   for (const double part : q) largest = std::max(largest, std::abs(part));
-  if (!(largest > 0)) value.fail("must be a non-zero quaternion (got 0)");
+  if (!(largest > 0)) place.fail("must be a non-zero quaternion (got 0)");
   double square = 0;
   for (double& part : q) square += (part / largest) * (part / largest);
   for (double& part : q) part = part / largest / std::sqrt(square);
@@ -40,20 +39,26 @@ Affined rotation_of(const GltfValue& value) {
 
 }  // namespace
 
-Affined transform_of(const GltfValue& node) {
+Affined transform_of(const GltfValue& node, const NodePose* pose) {
   if (const auto matrix = node.find("matrix")) {
+    if (pose && (pose->translation || pose->rotation || pose->scale))
+      matrix->fail("must be translation, rotation and scale, because the node is animated");
     const auto m = numbers_of<16>(*matrix);  // column-major
     if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
       matrix->fail("last row must be 0, 0, 0 and 1 (got a projection)");
     return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
   }
   const auto quaternion = node.find("rotation");
-  Affined transform = quaternion ? rotation_of(*quaternion) : Affined{};
-  const Vec3d scale = three_or(node, "scale", {1, 1, 1});
+  Affined transform;
+  if (pose && pose->rotation)
+    transform = rotation_of(*pose->rotation, node);
+  else if (quaternion)
+    transform = rotation_of(numbers_of<4>(*quaternion), *quaternion);
+  const Vec3d scale = pose && pose->scale ? *pose->scale : three_or(node, "scale", {1, 1, 1});
   transform.x = transform.x * scale.x;
   transform.y = transform.y * scale.y;
   transform.z = transform.z * scale.z;
-  transform.origin = three_or(node, "translation", {});
+  transform.origin = pose && pose->translation ? *pose->translation : three_or(node, "translation", {});
   return transform;
 }
 

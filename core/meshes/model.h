@@ -74,6 +74,14 @@ struct ModelLight {
   double inner_degrees = 0, outer_degrees = 45;  // half angles of a spot
 };
 
+// Time of an animation of a model.
+struct ModelPose {
+  int animation = 0;  // number in the file. REQUIRES: at least 0
+  double time = 0;    // in seconds from the start of the animation
+
+  auto operator<=>(const ModelPose&) const = default;
+};
+
 struct MeshModel {
   TriangleMesh mesh;
   std::vector<ModelMaterial> materials;
@@ -87,7 +95,9 @@ using MeshModelPtr = std::shared_ptr<const MeshModel>;
 
 // Reads a model file: see read_mesh() for the formats and the mesh. Parts of the mesh refer to `materials`.
 // Reads a ZIP archive as the model in it (core/meshes/model_archive.h), with files from the archive only.
-MeshModel read_model(std::string_view bytes, const MeshLimits& limits = {}, const ReadNearby& nearby = {});
+// With `pose`, a glTF model has the pose of its animation at that time, and other models are rejected.
+MeshModel read_model(std::string_view bytes, const MeshLimits& limits = {}, const ReadNearby& nearby = {},
+                     const std::optional<ModelPose>& pose = {});
 
 // Returns a model of a mesh without materials.
 inline MeshModelPtr model_of(TriangleMesh mesh) {

@@ -17,11 +17,17 @@ class AssetSource {
  public:
   virtual ~AssetSource() = default;
 
-  // Returns the contents of a file in or below the folder of the scene file.
-  virtual MeshModelPtr model_file(const std::string& /*name*/) const { refuse_files(); }
+  // Returns the contents of a file in or below the folder of the scene file. `pose`: see read_model().
+  virtual MeshModelPtr model_file(const std::string& /*name*/,
+                                  const std::optional<ModelPose>& /*pose*/ = {}) const {
+    refuse_files();
+  }
   virtual TexelsPtr picture_file(const std::string& /*name*/) const { refuse_files(); }
   // Returns an uploaded asset by the SHA-256 of its bytes, in hexadecimal.
-  virtual MeshModelPtr model_asset(const std::string& /*sha256*/) const { refuse_assets(); }
+  virtual MeshModelPtr model_asset(const std::string& /*sha256*/,
+                                   const std::optional<ModelPose>& /*pose*/ = {}) const {
+    refuse_assets();
+  }
   virtual TexelsPtr picture_asset(const std::string& /*sha256*/) const { refuse_assets(); }
 
  private:
@@ -34,12 +40,16 @@ class AssetSource {
   }
 };
 
-// Source of one model that was already read, for any name.
+// Source of one model that was already read, for any name and pose.
 class OneModel final : public AssetSource {
  public:
   explicit OneModel(MeshModelPtr model) : model_(std::move(model)) {}
-  MeshModelPtr model_file(const std::string&) const override { return model_; }
-  MeshModelPtr model_asset(const std::string&) const override { return model_; }
+  MeshModelPtr model_file(const std::string&, const std::optional<ModelPose>&) const override {
+    return model_;
+  }
+  MeshModelPtr model_asset(const std::string&, const std::optional<ModelPose>&) const override {
+    return model_;
+  }
 
  private:
   MeshModelPtr model_;

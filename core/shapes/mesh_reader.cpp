@@ -56,8 +56,9 @@ TriangleMesh read_inline(Params& p) {
   return mesh;
 }
 
-// Materials of a file have smaller numbers.
+// Materials and animations of a file have smaller numbers.
 constexpr std::int64_t kMaxPart = 1'000'000;
+constexpr double kMaxPoseTime = 1e6;  // seconds
 
 TriangleMesh part_or_whole(const MeshModel& model, std::optional<int> part) {
   if (!part) return whole_of(model.mesh);
@@ -88,6 +89,12 @@ std::string file_name(Params& p, const char* fallback = nullptr) {
 std::string asset_name(Params& p, const char* fallback = nullptr) {
   return p.text("asset", "SHA-256 of an uploaded OBJ, PLY, STL, 3MF or glTF file.", 64, fallback);
 }
+// Triangles of a file, and the pose of its model.
+struct Selection {
+  std::optional<int> part;
+  std::optional<ModelPose> pose;
+};
+
 std::optional<int> read_part(Params& p) {
   const std::int64_t part = p.integer("part",
                                       "Number of a material of the file whose triangles to read, from 0; -1: "
@@ -95,13 +102,27 @@ std::optional<int> read_part(Params& p) {
                                       -1, kMaxPart, derived(std::int64_t{-1}));
   return p.has("part") ? std::optional(static_cast<int>(part)) : std::nullopt;
 }
+std::optional<ModelPose> read_pose(Params& p) {
+  const double time = p.number("pose_time",
+                               "Time of the pose of an animated glTF model, in seconds from the start of the "
+                               "animation; default: the pose at rest.",
+                               {.min = -kMaxPoseTime, .max = kMaxPoseTime}, derived(0.0));
+  const std::int64_t animation = p.integer(
+      "animation", "Number of the animation in the file, from 0; requires pose_time.", 0, kMaxPart, 0);
+  if (p.has("animation") && !p.has("pose_time")) p.fail("animation", "must not be given without pose_time");
+  return p.has("pose_time") ? std::optional(ModelPose{static_cast<int>(animation), time}) : std::nullopt;
+}
+Selection read_selection(Params& p) { return {read_part(p), read_pose(p)}; }
+
 TriangleMesh read_file(Params& p, const AssetSource& source, const std::string& name,
-                       std::optional<int> part) {
-  return read_elsewhere(p, "file", name, part, [&](const std::string& n) { return source.model_file(n); });
+                       const Selection& selection) {
+  return read_elsewhere(p, "file", name, selection.part,
+                        [&](const std::string& n) { return source.model_file(n, selection.pose); });
 }
 TriangleMesh read_asset(Params& p, const AssetSource& source, const std::string& name,
-                        std::optional<int> part) {
-  return read_elsewhere(p, "asset", name, part, [&](const std::string& n) { return source.model_asset(n); });
+                        const Selection& selection) {
+  return read_elsewhere(p, "asset", name, selection.part,
+                        [&](const std::string& n) { return source.model_asset(n, selection.pose); });
 }
 
 SharedVectors share(std::vector<Vec3d> vectors) {
@@ -117,12 +138,12 @@ MeshObject MeshReader::read(Params& p) {
     case 0: mesh = read_inline(p); break;
     case 1: {
       const std::string name = file_name(p);
-      mesh = read_file(p, source_.assets, name, read_part(p));
+      mesh = read_file(p, source_.assets, name, read_selection(p));
       break;
     }
     default: {
       const std::string name = asset_name(p);
-      mesh = read_asset(p, source_.assets, name, read_part(p));
+      mesh = read_asset(p, source_.assets, name, read_selection(p));
     }
   }
   const double crease =
@@ -147,13 +168,13 @@ VertexKey MeshReader::read_key(Params& p, const TriangleMesh& rest, const Vertex
   std::vector<Vec3d> normals = p.directions(
       "normals", "Shading normal of each vertex, if the mesh has normals.", {0, kLimits.vertices});
   const std::string file = file_name(p, ""), asset = asset_name(p, "");
-  const std::optional<int> part = read_part(p);
+  const Selection selection = read_selection(p);
   if (p.has("positions") + p.has("file") + p.has("asset") > 1)
     p.fail("", "must have at most one of positions, file and asset");
   if (!fits(rest.positions.size(), rest.triangles.size(), p)) return at_rest;
   if (p.has("file") || p.has("asset")) {
-    TriangleMesh mesh =
-        p.has("file") ? read_file(p, source_.assets, file, part) : read_asset(p, source_.assets, asset, part);
+    TriangleMesh mesh = p.has("file") ? read_file(p, source_.assets, file, selection)
+                                      : read_asset(p, source_.assets, asset, selection);
     if (mesh.triangles != rest.triangles)
       p.fail("", "must have the same " + std::to_string(rest.triangles.size()) +
                      " triangles with the same vertex indices as the mesh without motion (got " +

@@ -58,8 +58,18 @@ constexpr std::array<std::string_view, 2> kFits{"view", "turn"};               /
 
 constexpr std::array<std::string_view, 2> kLights{"studio", "file"};
 
-enum Parameter : std::size_t { kFrom, kUp, kProjection, kGround, kFit, kCamera, kLight };
-constexpr std::array<ViewParameter, 7> kParameters{
+enum Parameter : std::size_t {
+  kFrom,
+  kUp,
+  kProjection,
+  kGround,
+  kFit,
+  kCamera,
+  kLight,
+  kPoseTime,
+  kAnimation
+};
+constexpr std::array<ViewParameter, 9> kParameters{
     {{"from", "DIRECTION",
       "Direction from the model to the camera: front, right, back, left, top, bottom, iso, or azimuth and "
       "elevation in degrees.",
@@ -70,7 +80,10 @@ constexpr std::array<ViewParameter, 7> kParameters{
      {"fit", "NAME", "Content of the image: the model as seen, or the model from every azimuth.", "view",
       kFits},
      {"camera", "NAME", "Camera of a glTF file, by name or number from 0, instead of a framed view.", ""},
-     {"light", "NAME", "Light of a studio, or the lights of a glTF file.", "studio", kLights}}};
+     {"light", "NAME", "Light of a studio, or the lights of a glTF file.", "studio", kLights},
+     {"pose_time", "SECONDS", "Time of the pose in an animation of a glTF model, in seconds; none: at rest.",
+      "none"},
+     {"animation", "NUMBER", "Number of the animation of pose_time, from 0.", "0"}}};
 
 ViewDirection read_direction(Params& p) {
   const ViewParameter& row = kParameters[kFrom];
@@ -82,6 +95,28 @@ ViewDirection read_direction(Params& p) {
       "and -90 to 90, such as 30,20 (got \"" +
           shortened(text, 40) + "\")");
   return {};
+}
+
+// Returns nullopt for a model at rest.
+std::optional<ModelPose> read_pose(Params& p) {
+  const auto text_of = [&](Parameter which) {
+    const ViewParameter& row = kParameters[which];
+    return p.text(row.key, row.help, 80, row.fallback.data());
+  };
+  const auto fail = [&](Parameter which, const char* allowed, const std::string& got) {
+    p.fail(kParameters[which].key,
+           std::string("must be ") + allowed + " (got \"" + shortened(got, 40) + "\")");
+    return std::nullopt;
+  };
+  const std::string seconds = text_of(kPoseTime), number = text_of(kAnimation);
+  const auto animation = parse_number<int>(number);
+  if (!animation || *animation < 0 || *animation > 1'000'000)
+    return fail(kAnimation, "an integer from 0 to 1,000,000", number);
+  if (seconds == "none") return std::nullopt;
+  const auto time = parse_number<double>(seconds);
+  if (!time || !(std::abs(*time) <= 1e6))
+    return fail(kPoseTime, "none, or seconds from -1e6 to 1e6", seconds);
+  return ModelPose{*animation, *time};
 }
 
 Vec3d axis_of(std::string_view name) {
@@ -253,6 +288,7 @@ ViewOptions read_view_options(const Document& document) {
     options.fit = static_cast<Fit>(choice(kFit));
     options.camera = p.text(kParameters[kCamera].key, kParameters[kCamera].help, 200, "");
     options.file_light = choice(kLight) == 1;
+    options.pose = read_pose(p);
   });
   return options;
 }
@@ -283,6 +319,11 @@ Json view_scene(const MeshModel& model, const ModelReference& reference, const V
   add_light(scene, model, options, axes);
   add_model(scene, model, reference, {{"type", "lambert"}, {"reflectance", kModelReflectance}},
             kCreaseDegrees);
+  if (options.pose)
+    for (Json& object : scene["objects"]) {
+      object["pose_time"] = options.pose->time;
+      object["animation"] = options.pose->animation;
+    }
   add_ground(scene, options, axes, corners, framing.eye);
   // In the open, sharing paths costs more than it gains.
   scene["render"] = {{"technique", "path"}, {"max_depth", 4}, {"path_reuse", 1}};

@@ -22,8 +22,9 @@ struct ViewOptions {
   bool orthographic = false;
   Ground ground = Ground::none;
   Fit fit = Fit::view;
-  std::string camera;       // name or number of a camera of the file; empty: framed exactly
-  bool file_light = false;  // lights of the file, otherwise those of a studio
+  std::string camera;             // name or number of a camera of the file; empty: framed exactly
+  bool file_light = false;        // lights of the file, otherwise those of a studio
+  std::optional<ModelPose> pose;  // default: at rest
 };
 
 // Option of a view: query parameter and flag.

@@ -12,9 +12,9 @@ AssetReader::AssetReader(const AssetSource& assets, Admission& admission, std::s
   if (bytes > kSmall) take_turn();
 }
 
-MeshModelPtr AssetReader::model_asset(const std::string& sha256) const {
+MeshModelPtr AssetReader::model_asset(const std::string& sha256, const std::optional<ModelPose>& pose) const {
   if (!ticket_) take_turn();
-  return assets_.model_asset(sha256);
+  return assets_.model_asset(sha256, pose);
 }
 
 TexelsPtr AssetReader::picture_asset(const std::string& sha256) const {

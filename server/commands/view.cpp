@@ -22,6 +22,7 @@ Examples:
   orrery view part.stl -o part.png
   orrery view chair.glb -o chair.png --from front --width 1024 --height 1024
   orrery view part.stl -o - --ground shadow > part.png
+  orrery view robot.glb -o robot.png --pose-time 1.5 --animation 2
   orrery view part.stl --print-scene -o part.json    # the scene, as JSON
 
 Renders an OBJ, PLY, STL, 3MF or glTF file without a scene: frames the model
@@ -65,7 +66,7 @@ std::string help_of(const ViewParameter& parameter) {
 View view_of(const ViewFlags& flags, const RenderRequest& request) {
   const ViewOptions options = options_of(flags);
   const std::string& path = flags.render.render.scene;
-  ModelFile file = read_model_file(path);
+  ModelFile file = read_model_file(path, options.pose);
   View view{OneModel(file.model), {}};
   for (const std::string& note : file.model->mesh.notes)
     std::cerr << "orrery: warning: " << path << ": " << note << "\n";

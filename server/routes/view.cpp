@@ -41,7 +41,7 @@ RenderOrder make_view_order(App& app, const Caller& caller, ViewQuery query, con
   SceneStore::Prepared scene;
   app.read_assets(caller, trace, [&](const AssetSource& assets) {
     const auto [width, height] = view_size(query.request);
-    const MeshModelPtr model = assets.model_asset(id);
+    const MeshModelPtr model = assets.model_asset(id, query.options.pose);
     const nlohmann::json json = view_scene(*model, {"asset", id, "Model"}, query.options, width, height);
     scene = app.scenes().get(document_of(json), OneModel(model), caller.client);
   });

@@ -8,6 +8,8 @@
 namespace orrery {
 namespace {
 
+using test::Gltf;
+
 const std::string kTetrahedron =
     "v 1 1 1\nv -1 -1 1\nv -1 1 -1\nv 1 -1 -1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 const std::string kSmall = "?width=40&height=30&samples=2";
@@ -69,6 +71,26 @@ TEST_F(View, ReturnsNotModifiedForKnownImage) {
   EXPECT_EQ(client_.Head(path())->get_header_value("ETag"), etag);
 }
 
+// The triangle moves by 5 in 1 s.
+TEST_F(View, PosesAnimatedModel) {
+  Gltf gltf;
+  gltf.positions({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  gltf.add<float>({0, 1}, "SCALAR", 5126);
+  gltf.add<float>({0, 0, 0, 5, 0, 0}, "VEC3", 5126);
+  const std::string model =
+      gltf.glb(R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0},{"mesh":0}],)"
+               R"("animations":[{"samplers":[{"input":1,"output":2}],)"
+               R"("channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}]}])");
+  const auto rest = post(kSmall, model), start = post(kSmall + "&pose_time=0", model),
+             later = post(kSmall + "&pose_time=0.5&animation=0", model);
+  ASSERT_EQ(rest->status, 200) << rest->body;
+  ASSERT_EQ(later->status, 200) << later->body;
+  EXPECT_EQ(start->body, rest->body);
+  EXPECT_NE(later->body, rest->body);
+  EXPECT_NE(client_.Get("/v1/scenes/" + later->get_header_value("Orrery-Scene-Id"))->body.find("pose_time"),
+            std::string::npos);
+}
+
 TEST_F(View, RejectsBadRequests) {
   const auto pointer_of = [&](const httplib::Result& result) {
     return expect_problem(result, 422).at("errors").at(0).at("pointer").get<std::string>();
@@ -76,7 +98,10 @@ TEST_F(View, RejectsBadRequests) {
   EXPECT_EQ(pointer_of(post("?from=sideways")), "/from");
   EXPECT_EQ(pointer_of(post("?up=w")), "/up");
   EXPECT_EQ(pointer_of(post("?samples=0")), "/samples");
+  EXPECT_EQ(pointer_of(post("?pose_time=soon")), "/pose_time");
+  EXPECT_EQ(pointer_of(post("?pose_time=1&animation=-1")), "/animation");
   expect_problem(post("?form=front"), 422);
+  expect_problem(post("?pose_time=1"), 422);  // not a glTF file
   expect_problem(post("", "no model"), 422);
   expect_problem(client_.Get("/v1/assets/" + std::string(64, '0') + "/view.png"), 404);
   expect_problem(client_.Get("/v1/assets/abc/view.png"), 422);

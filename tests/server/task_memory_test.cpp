@@ -35,7 +35,7 @@ TEST(TaskMemory, StopsSmoothingDuringFacetPass) {
 // Asset source that returns a mesh of 100,000 vertices for every name.
 class LargeMesh final : public AssetSource {
  public:
-  MeshModelPtr model_file(const std::string&) const override {
+  MeshModelPtr model_file(const std::string&, const std::optional<ModelPose>&) const override {
     TriangleMesh mesh;
     mesh.positions.resize(100'000, Vec3d(1, 2, 3));
     mesh.triangles = {{0, 1, 2}};
@@ -52,7 +52,7 @@ TEST(TaskMemory, SharesEqualDataAmongKeyframes) {
     return account->bytes();
   };
   const std::size_t few = bytes("[{'time': 0}, {'time': 1}]"),
-                    vertices = LargeMesh().model_file("")->mesh.positions.size();
+                    vertices = LargeMesh().model_file("", {})->mesh.positions.size();
   EXPECT_LT(bytes("[{'time': 0}, {'time': 1}, {'time': 2}]"), few + 10'000);
   EXPECT_GE(bytes("[{'time': 0}, {'time': 1, 'file': 'b.obj'}]"), few + vertices * sizeof(Vec3d));
 }
