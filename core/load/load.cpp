@@ -33,6 +33,15 @@ std::vector<Choice> choices_of(const Types& types) {
   return choices;
 }
 
+// Replaces an up direction along the view: by -z if the view is nearest to the y axis, else by +y.
+void replace_up(const Vec3d& view, Scene& scene) {
+  const Vec3d size = abs(view);
+  const bool is_vertical = size.y >= size.x && size.y >= size.z;
+  scene.placement.up = is_vertical ? Vec3d(0, 0, -1) : Vec3d(0, 1, 0);
+  scene.notes.push_back({"/camera/up", std::string("is parallel to the view direction and was replaced by ") +
+                                           (is_vertical ? "[0, 0, -1]" : "[0, 1, 0]")});
+}
+
 void read_camera(Params& p, Scene& scene) {
   const auto type = p.pick("type", "Projection type.", choices_of(camera_types()));
   if (!type) return;
@@ -64,7 +73,7 @@ void read_camera(Params& p, Scene& scene) {
   if (view == Vec3d())
     p.fail("look_at", "must differ from eye");
   else if (!(length(cross(view, placement.up)) > 1e-9))
-    p.fail("up", "must not be parallel to the view direction");
+    replace_up(view, scene);
 }
 
 // Asset source that loads each mesh and image once, even if the scene names it several times.
@@ -78,11 +87,13 @@ class CachedAssetSource final : public AssetSource {
     return once(assets_, {sha256, pose}, [&] { return from_.model_asset(sha256, pose); });
   }
   TexelsPtr picture_file(const std::string& name) const override {
-    return once(picture_files_, name, [&] { return from_.picture_file(name); });
+    return once(picture_files_, name, [&] { return noted(name, from_.picture_file(name)); });
   }
   TexelsPtr picture_asset(const std::string& sha256) const override {
-    return once(picture_assets_, sha256, [&] { return from_.picture_asset(sha256); });
+    return once(picture_assets_, sha256, [&] { return noted(sha256, from_.picture_asset(sha256)); });
   }
+  // Returns notes about images.
+  std::vector<Problem> take_notes() const { return std::move(notes_); }
 
  private:
   using PosedName = std::pair<std::string, std::optional<ModelPose>>;
@@ -93,7 +104,15 @@ class CachedAssetSource final : public AssetSource {
     const auto known = assets.find(name);
     return known != assets.end() ? known->second : assets.emplace(name, read()).first->second;
   }
+  TexelsPtr noted(const std::string& name, TexelsPtr texels) const {
+    if (texels && texels->clamped > 0)
+      notes_.push_back({"", "image " + shortened(name, 80) + " has " + grouped(texels->clamped) +
+                                " values that are negative, too large or no numbers, which were clamped"});
+    return texels;
+  }
+
   const AssetSource& from_;
+  mutable std::vector<Problem> notes_;
   mutable std::map<PosedName, MeshModelPtr> files_, assets_;
   mutable std::map<std::string, TexelsPtr> picture_files_, picture_assets_;
 };
@@ -239,6 +258,7 @@ class SceneReader {
     number_objects();
     gather_motion();
     scene_->media = find_media(*scene_);
+    for (Problem& note : assets_.take_notes()) scene_->notes.push_back(std::move(note));
     scene_->facts = gather_facts(*scene_);
     const LocatedValue& smallest = scene_->facts.smallest_feature;
     if (smallest.value > 0 && smallest.value < kMinSize)  // moving triangles may have size 0 at some times

@@ -18,14 +18,6 @@ constexpr std::size_t kNameExcerpt = 120;  // characters of a name in errors
 // Extensions of models. Those of glTF are first.
 constexpr std::array<std::string_view, 6> kModelExtensions{".gltf", ".glb", ".obj", ".ply", ".stl", ".3mf"};
 constexpr std::size_t kGltfExtensions = 2;
-constexpr const char* kPackageContents = "[Content_Types].xml";
-
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return lower;
-}
 
 // Calls `visit(component)` for the components of a path. Backslashes separate components, too.
 template <class Visit>
@@ -120,7 +112,7 @@ struct ModelArchive::Contents {
 };
 
 bool ModelArchive::is_archive(std::string_view bytes) {
-  return ZipFile::is_zip(bytes) && !ZipFile(bytes, kArchiveLimits).contains(kPackageContents);
+  return ZipFile::is_zip(bytes) && !is_three_mf(bytes);
 }
 
 ModelArchive::ModelArchive(std::string_view bytes) : contents_(std::make_shared<Contents>(bytes)) {

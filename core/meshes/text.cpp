@@ -153,6 +153,13 @@ std::int64_t TextReader::integer_in(std::string_view word, std::string_view name
 
 void TextReader::fail(const std::string& detail) const { fail_at("line " + std::to_string(line_), detail); }
 
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return lower;
+}
+
 std::string excerpt(std::string_view text, std::size_t longest) {
   std::string shown(text.substr(0, longest));
   for (char& c : shown)

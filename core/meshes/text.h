@@ -47,6 +47,9 @@ class TextReader {
   std::size_t line_ = 1;
 };
 
+// Returns the text with the letters A to Z in lower case.
+std::string lower_case(std::string_view text);
+
 // Returns `text` for a message: quoted, truncated to `longest` bytes, and with "?" for each byte that is not
 // printable ASCII.
 std::string excerpt(std::string_view text, std::size_t longest = 40);

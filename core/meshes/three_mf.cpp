@@ -15,13 +15,6 @@ namespace {
 constexpr std::size_t kMaxPlacedObjects = 250'000;  // a small file can place many objects
 constexpr std::size_t kMaxNesting = 64;             // nested components
 
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return lower;
-}
-
 bool is_model_part(const std::string& name) { return lower_case(name).ends_with(".model"); }
 
 // Archive of a 3MF file. Names of parts ignore case.

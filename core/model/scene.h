@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/error.h"
 #include "core/math/affine.h"
 #include "core/math/keyframes.h"
 #include "core/model/atmosphere.h"
@@ -165,6 +166,7 @@ struct Scene {
   std::string id;  // SHA-256 of the canonical JSON
   std::string canonical;
   std::string title, description;
+  std::vector<Problem> notes;  // values that were replaced while the scene was read
   CameraPlacement placement;
   std::shared_ptr<const Camera> camera;
   RenderSettings render;  // options that a scene may set; nullopt: default of the technique

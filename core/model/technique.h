@@ -43,10 +43,10 @@ class Tracer {
   // trace_emission_only(), with separate camera rays. Emitters have the sharpest edges of an image, and
   // emission-only rays are cheap.
   virtual bool has_emission_pass() const { return false; }
-  // Adds `share` times the emission at the first hit of each camera ray, or `share` times the background if
-  // the ray misses.
-  virtual void trace_emission_only(const RayBatch<T>& /*camera_rays*/, T /*share*/, TraceResult<T>& /*out*/,
-                                   TraceCounts& /*counts*/) {}
+  // Adds `share` times the emission at the first hit of each camera ray of `groups`, or `share` times the
+  // background if the ray misses.
+  virtual void trace_emission_only(const RayBatch<T>& /*camera_rays*/, const LaneGroups& /*groups*/,
+                                   T /*share*/, TraceResult<T>& /*out*/, TraceCounts& /*counts*/) {}
 };
 
 template <class T>

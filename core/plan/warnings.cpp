@@ -335,10 +335,10 @@ Problem missing_scattering(const Scene& scene, const Plan& plan) {
 }
 
 std::vector<Problem> warnings(const Scene& scene, const Plan& plan, bool empty) {
-  std::vector<Problem> found;
+  std::vector<Problem> found = scene.notes;
   if (is_unlit(scene, plan))
     found.push_back({"/lights", "scene has no light source and no ambient light; every surface is black"});
-  if (!plan.camera->parallel() && is_enclosed(scene, plan))
+  if (!plan.camera->parallel() && !scene.facts.cutouts && is_enclosed(scene, plan))
     found.push_back({"/camera/eye", "camera is inside an opaque shape that contains no light"});
   if (Problem creates = created_energy(scene, plan); !creates.detail.empty())
     found.push_back(std::move(creates));

@@ -12,6 +12,7 @@
 namespace orrery {
 
 // Returns the warnings that are known before rendering:
+//  - Scene::notes;
 //  - every surface is black: there is no light source, ambient light or emission, no background or
 //    environment that a mirror shows, and no environment that lights surfaces;
 //  - the eye is inside a closed opaque shape that hides every light source and, if there is ambient light or

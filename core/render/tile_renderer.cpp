@@ -150,41 +150,67 @@ void TileRenderer<T>::put_single(const TileView& tile, Film& film) {
   stats_.non_finite_pixels += film.put(tile, means_);
 }
 
-// Chooses the number of emission samples: kMaxEmissionSamples with lens or motion blur, or if emission varies
-// within the tile, else one. The variation is tested at two opposite corners of each pixel, or of the
-// filter's support. The choice is not random, so the number is independent of the samples.
+// Tests two opposite corners of each pixel, or of the filter's support. A block is varied if they differ
+// within it, or if it or one of its eight neighbours differs from another.
 template <class T>
-void TileRenderer<T>::begin_emission_rays(const TileView& tile) {
-  emission_rays_ = 0;
-  if (!tracer_->has_emission_pass()) return;
-  find_streams(tile, SampleSet::emission_ray, emission_ray_streams_);
+auto TileRenderer<T>::find_varied_blocks(const TileView& tile) -> Blocks {
+  constexpr int kSide = kTileSide / 4, kSize = 16;
   const LaneGroups all = LaneGroups::covering(0, kBatch, kWidth<T>);
-  Vec3<T> first;
-  bool differs = false;
+  Blocks differs{}, known{}, varied{};
+  std::array<Vec3<T>, kBatch / kSize> first;
   const float reach = filter_ ? filter_->half_width() : 0.5f;
-  const std::array<float, 2> corners{0.5f - reach, filter_ ? 0.5f + reach : 1.0f - 0x1p-24f};
-  for (const float corner : corners) {
+  for (const float corner : {0.5f - reach, filter_ ? 0.5f + reach : 1.0f - 0x1p-24f}) {
     look_samples_.u.values.fill(corner);
     look_samples_.v.values.fill(corner);
     plan_.camera->generate(plan_.frame, plan_.width, plan_.height, tile, look_samples_, rays_);
     if (plan_.shutter > 0) put_middle_time(rays_);
     for (const int i : all) result_.radiance.put(i, Vec3<Lanes<T>>(Lanes<T>(T(0))));
-    tracer_->trace_emission_only(rays_, T(1), result_, stats_.counts);
-    if (corner == corners[0]) first = result_.radiance[0];
-    for (int slot = 0; slot < kBatch; ++slot)
-      differs = differs || (rays_.t_max[slot] > 0 && result_.radiance[slot] != first);
+    tracer_->trace_emission_only(rays_, all, T(1), result_, stats_.counts);
+    for (int slot = 0; slot < kBatch; ++slot) {
+      if (!(rays_.t_max[slot] > 0)) continue;
+      const auto block = static_cast<std::size_t>(slot / kSize);
+      if (!known[block]) first[block] = result_.radiance[slot];
+      known[block] = true;
+      differs[block] = differs[block] || result_.radiance[slot] != first[block];
+    }
   }
-  emission_rays_ = differs || plan_.lens || plan_.shutter > 0 ? kMaxEmissionSamples : 1;
+  for (int i = 0; i < kSide * kSide; ++i)
+    for (int k = 0; k < 9; ++k) {
+      const int x = i % kSide + k % 3 - 1, y = i / kSide + k / 3 - 1;
+      if (x < 0 || x >= kSide || y < 0 || y >= kSide) continue;
+      const auto block = static_cast<std::size_t>(i), other = static_cast<std::size_t>(y * kSide + x);
+      if (known[block] && known[other])
+        varied[block] = varied[block] || differs[other] || first[other] != first[block];
+    }
+  return varied;
+}
+
+// Blocks of 4x4 pixels in which the emission may vary, or all with lens or motion blur, get
+// kMaxEmissionSamples emission samples, and others get one. The choice is not random, so the numbers are
+// independent of the samples.
+template <class T>
+void TileRenderer<T>::begin_emission_rays(const TileView& tile) {
+  even_ = varied_ = LaneGroups();
+  if (!tracer_->has_emission_pass()) return;
+  find_streams(tile, SampleSet::emission_ray, emission_ray_streams_);
+  const bool blurred = plan_.lens || plan_.shutter > 0;
+  const Blocks varied = blurred ? Blocks{} : find_varied_blocks(tile);
+  for (int i = 0; i < kBatch; i += kWidth<T>)
+    (blurred || varied[static_cast<std::size_t>(i / 16)] ? varied_ : even_).add(i);
 }
 
 template <class T>
 void TileRenderer<T>::trace_emission_only(const TileView& tile, int sample, PixelFilter::Part part,
                                           TraceResult<T>& into) {
-  for (int i = emission_rays_ * sample; i < emission_rays_ * (sample + 1); ++i) {
-    place_samples(static_cast<std::uint32_t>(i), emission_ray_streams_, part, look_samples_);
-    send_rays(tile, look_samples_, Draws(plan_.seed, tile, i), SampleSet::emission_ray_lens);
-    tracer_->trace_emission_only(rays_, T(1) / static_cast<T>(emission_rays_), into, stats_.counts);
-  }
+  const auto trace = [&](int index, const LaneGroups& groups, T share) {
+    place_samples(static_cast<std::uint32_t>(index), emission_ray_streams_, part, look_samples_);
+    send_rays(tile, look_samples_, Draws(plan_.seed, tile, index), SampleSet::emission_ray_lens);
+    tracer_->trace_emission_only(rays_, groups, share, into, stats_.counts);
+  };
+  if (!even_.empty()) trace(sample, even_, T(1));
+  if (varied_.empty()) return;
+  for (int k = 0; k < kMaxEmissionSamples; ++k)
+    trace(kMaxEmissionSamples * sample + k, varied_, T(1) / T(kMaxEmissionSamples));
 }
 
 template <class T>

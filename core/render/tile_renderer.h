@@ -33,9 +33,12 @@ class TileRenderer {
   void subtract_negative_lobe();
   // Generates camera rays through the samples. Lens positions and times are drawn from `set`.
   void send_rays(const TileView& tile, const TileSamples& samples, const Draws& draws, SampleSet set);
-  // Chooses the number of emission samples and their random streams. trace_emission_only() traces the
+  // Chooses the numbers of emission samples and their random streams. trace_emission_only() traces the
   // samples.
   void begin_emission_rays(const TileView& tile);
+  // Returns whether the emission varies in or next to each block of 4x4 pixels of the tile.
+  using Blocks = std::array<bool, kBatch / 16>;
+  Blocks find_varied_blocks(const TileView& tile);
   void trace_emission_only(const TileView& tile, int sample, PixelFilter::Part part, TraceResult<T>& into);
   void find_streams(const TileView& tile, SampleSet set, Array<std::uint32_t>& streams);
   void place_samples(std::uint32_t sample, const Array<std::uint32_t>& streams, PixelFilter::Part part,
@@ -53,7 +56,8 @@ class TileRenderer {
   // For each pixel of the current tile: random streams of the positions of samples and of emission samples.
   Array<std::uint32_t> pixel_streams_, emission_ray_streams_;
   TileSamples samples_ = TileSamples::centres(), look_samples_ = TileSamples::centres();
-  int emission_rays_ = 0;  // emission samples for each sample of the current tile
+  // Registers of the current tile with one and with kMaxEmissionSamples emission samples for each sample.
+  LaneGroups even_, varied_;
   RayBatch<T> rays_;
   TraceResult<T> result_;
   std::optional<PixelFilter> filter_;              // nullopt: samples are uniform over the pixel

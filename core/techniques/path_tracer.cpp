@@ -25,15 +25,14 @@ PathTracer<T>::PathTracer(const World<T>& world, const Plan& plan, Lobes followe
 }
 
 template <class T>
-void PathTracer<T>::trace_emission_only(const RayBatch<T>& camera_rays, T share, TraceResult<T>& out,
-                                        TraceCounts& counts) {
+void PathTracer<T>::trace_emission_only(const RayBatch<T>& camera_rays, const LaneGroups& groups, T share,
+                                        TraceResult<T>& out, TraceCounts& counts) {
   auto& v = *this->vertices_;
-  const LaneGroups all = LaneGroups::covering(0, kBatch, kWidth<T>);
-  counts.rays.camera += active_rays(camera_rays, all);
-  reset(camera_rays, all, v.hits);
-  this->accelerator_.closest(camera_rays, all, v.hits, counts.accelerator);
-  if (this->atmosphere_) this->atmosphere_->find(camera_rays, 0, v.hits, all);
-  for (const int i : all) {
+  counts.rays.camera += active_rays(camera_rays, groups);
+  reset(camera_rays, groups, v.hits);
+  this->accelerator_.closest(camera_rays, groups, v.hits, counts.accelerator);
+  if (this->atmosphere_) this->atmosphere_->find(camera_rays, 0, v.hits, groups);
+  for (const int i : groups) {
     find_materials(this->geometry_, v.hits, i, v.surface);
     Vec3<N> seen;
     if (!this->geometry_.emission.empty()) seen = emission_at(this->geometry_, v.surface, i);
@@ -42,9 +41,9 @@ void PathTracer<T>::trace_emission_only(const RayBatch<T>& camera_rays, T share,
     out.radiance.put(i, out.radiance.at(i) + select(missed_lanes(v.hits, i), background, seen) * N(share));
   }
   if (sampled_light_.beyond().empty()) return;
-  for (const int i : all) v.radiance.put(i, Vec3<N>(N(T(0))));
-  sampled_light_.beyond().add(camera_rays, v.hits, all, nullptr, v.radiance);
-  for (const int i : all) out.radiance.put(i, out.radiance.at(i) + v.radiance.at(i) * N(share));
+  for (const int i : groups) v.radiance.put(i, Vec3<N>(N(T(0))));
+  sampled_light_.beyond().add(camera_rays, v.hits, groups, nullptr, v.radiance);
+  for (const int i : groups) out.radiance.put(i, out.radiance.at(i) + v.radiance.at(i) * N(share));
 }
 
 template <class T>

@@ -22,8 +22,8 @@ class PathTracer : public Wavefront<T> {
   PathTracer(const World<T>& world, const Plan& plan, Lobes followed);
 
   bool has_emission_pass() const final { return has_emission_pass_; }
-  void trace_emission_only(const RayBatch<T>& camera_rays, T share, TraceResult<T>& out,
-                           TraceCounts& counts) final;
+  void trace_emission_only(const RayBatch<T>& camera_rays, const LaneGroups& groups, T share,
+                           TraceResult<T>& out, TraceCounts& counts) final;
 
  private:
   using N = Lanes<T>;

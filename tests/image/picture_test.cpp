@@ -169,6 +169,20 @@ TEST(Pictures, ReportsInvalidTexels) {
   }
 }
 
+TEST(Pictures, ClampsAFewInvalidTexels) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  std::vector<float> values(16 * 16 * 3, 0.5f);
+  const std::array bad = {-1.0f, kInfinity, -kInfinity, std::numeric_limits<float>::quiet_NaN()};
+  for (std::size_t i = 0; i < bad.size(); ++i) values[100 * i] = bad[i];
+  const Texels read = read_picture(encode_exr(linear_image(16, 16, values)));
+  EXPECT_EQ(read.clamped, 4);
+  EXPECT_EQ(read.rgb[0], 0);
+  EXPECT_EQ(read.rgb[100], kMaxTexel);
+  EXPECT_EQ(read.rgb[200], 0);
+  EXPECT_EQ(read.rgb[300], 0);
+  EXPECT_EQ(read.rgb[1], 0.5f);
+}
+
 TEST(Pictures, RejectsOtherFormatsAndBareSignatures) {
   for (const std::string& bytes :
        {std::string(), std::string("v 0 0 0\n"), std::string("GIF89a"), std::string("II*\0", 4),

@@ -174,5 +174,25 @@ TEST(Load, RejectsInstancedPrimitivesAboveLimit) {
   EXPECT_EQ(first_problem(scene), "/instances");
 }
 
+// A camera that looks along its up vector takes another one, with a note.
+TEST(Load, ReplacesUpAlongTheView) {
+  const auto loaded = [](const char* eye, const char* up) {
+    return load_scene(
+        std::string(
+            "{\"version\": 1, \"camera\": {\"type\": \"perspective\", \"look_at\": [0, 0, 0], \"eye\": ") +
+        eye + ", \"up\": " + up +
+        "}, \"materials\": {\"m\": {\"type\": \"lambert\"}}, \"objects\": [{\"type\": \"sphere\", "
+        "\"center\": [0, 0, 0], \"radius\": 1, \"material\": \"m\"}]}");
+  };
+  const auto above = loaded("[0, 5, 0]", "[0, 1, 0]");
+  EXPECT_EQ(above->placement.up, Vec3d(0, 0, -1));
+  ASSERT_EQ(above->notes.size(), 1);
+  EXPECT_EQ(above->notes[0].text(),
+            "/camera/up: is parallel to the view direction and was replaced by [0, 0, -1]");
+  EXPECT_EQ(loaded("[0, 0, 5]", "[0, 0, 2]")->placement.up, Vec3d(0, 1, 0));
+  EXPECT_EQ(loaded("[5, 0, 1]", "[5, 0, 1]")->placement.up, Vec3d(0, 1, 0));
+  EXPECT_TRUE(loaded("[0, 5, 1]", "[0, 1, 0]")->notes.empty());
+}
+
 }  // namespace
 }  // namespace orrery::test

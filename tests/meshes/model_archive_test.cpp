@@ -36,6 +36,7 @@ TEST(ModelArchive, ReadsModelOfEveryFormat) {
   const std::pair<std::string, std::string> files[] = {{"a.obj", obj_of(cube())},
                                                        {"a.ply", ply_of(cube())},
                                                        {"a.stl", binary_stl_of(cube())},
+                                                       {"a.3mf", three_mf_of(cube())},
                                                        {"a.glb", gltf_of(cube()).glb(kOneMesh)},
                                                        {"A.GLTF", gltf_of(cube()).gltf(kOneMesh)}};
   for (const auto& [name, content] : files) {
@@ -58,6 +59,18 @@ TEST(ModelArchive, ReadsFilesRelativeToTheModel) {
                                                        {"Chairs/New/A.BIN", "a.bin"}};
   for (const auto& [entry, uri] : names)
     EXPECT_EQ(corners_of(read_mesh(archived_cube(entry, uri))), corners_of(cube())) << entry << ' ' << uri;
+}
+
+TEST(ModelArchive, ReadsMaterialLibraries) {
+  const MeshModel model = read_model(Zip()
+                                         .add("x/a.obj", "mtllib Paint.mtl\nusemtl red\n" + obj_of(cube()))
+                                         .add("x/paint.mtl", "newmtl red\nKd 1 0 0\nmap_Kd maps\\wood.png\n")
+                                         .add("x/maps/wood.png", "an image")
+                                         .bytes());
+  ASSERT_EQ(model.materials.size(), 1);
+  EXPECT_EQ(model.materials[0].name, "red");
+  ASSERT_EQ(model.images.size(), 1);
+  EXPECT_EQ(*model.images[0].bytes, "an image");
 }
 
 TEST(ModelArchive, PrefersNamesOfEqualCase) {
@@ -101,9 +114,9 @@ TEST(ModelArchive, RejectsArchivesInArchives) {
   EXPECT_THAT(problem(Zip().add("b.zip", inner).bytes()), HasSubstr("must contain a model"));
 }
 
-TEST(ModelArchive, LeavesPackagesToOtherReaders) {
+TEST(ModelArchive, LeavesPackagesToTheirReader) {
   EXPECT_TRUE(ModelArchive::is_archive(Zip().add("a.obj", "").bytes()));
-  EXPECT_FALSE(ModelArchive::is_archive(Zip().add("[Content_Types].xml", "").bytes()));
+  EXPECT_FALSE(ModelArchive::is_archive(three_mf_of(cube())));
   EXPECT_FALSE(ModelArchive::is_archive(obj_of(cube())));
 }
 

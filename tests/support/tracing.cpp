@@ -66,7 +66,9 @@ std::vector<TraceOutput> Tracing::trace(const std::vector<Ray<double>>& rays, in
   recorder_->generations.clear();
   recorder_->shadow.clear();
   tracer_->trace(*batch, Draws(plan_.seed, TileView{0, 0, kTileSide, kTileSide}, sample), *result, counts_);
-  if (tracer_->has_emission_pass()) tracer_->trace_emission_only(*batch, 1, *result, counts_);
+  if (tracer_->has_emission_pass())
+    tracer_->trace_emission_only(*batch, LaneGroups::covering(0, kBatch, kWidth<double>), 1, *result,
+                                 counts_);
   std::vector<TraceOutput> answers;
   for (int i = 0; i < static_cast<int>(rays.size()); ++i)
     answers.push_back({result->radiance[i], result->omitted[i], max_component(result->omitted[i])});

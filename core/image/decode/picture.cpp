@@ -32,16 +32,21 @@ const Signature* signature_of(std::string_view bytes) {
   return found == kSignatures.end() ? nullptr : &*found;
 }
 
-void check_texels(const Texels& picture) {
+// Sets values outside of 0 to kMaxTexel to the nearest one inside, and NaN to 0. Throws InputError if more
+// than 1 % of the values are outside: such an image is damaged.
+void clamp_texels(Texels& picture) {
+  const std::size_t most = picture.rgb.size() / 100;
   for (std::size_t i = 0; i < picture.rgb.size(); ++i) {
     checkpoint(i);
     const float value = picture.rgb[i];
     if (value >= 0 && value <= kMaxTexel) continue;
+    picture.rgb[i] = value > kMaxTexel ? kMaxTexel : 0;
+    if (++picture.clamped <= most) continue;
     const std::size_t texel = i / 3, width = static_cast<std::size_t>(picture.width);
     char text[128];
     std::snprintf(text, sizeof text, "texels must be from 0 to %g (got %g in column %zu of row %zu, ",
                   double{kMaxTexel}, double{value}, texel % width, texel / width);
-    throw InputError("", std::string(text) + "counted from 0 at the upper left)");
+    throw InputError("", std::string(text) + "counted from 0 at the upper left, and more than 1 % in all)");
   }
 }
 
@@ -70,7 +75,7 @@ Texels read_picture(std::string_view bytes, const PictureLimits& limits) {
   const PictureFormat format = picture_format(bytes);
   try {
     Texels picture = decode_in_process(inspect_picture(bytes, format, limits));
-    check_texels(picture);
+    clamp_texels(picture);
     picture.from_srgb = format != PictureFormat::exr && format != PictureFormat::hdr;
     return picture;
   } catch (const InputError& error) {

@@ -21,6 +21,7 @@ struct Texels {
   int width = 0, height = 0;
   std::vector<float> rgb = {};    // red, green, blue per texel; top row first
   std::vector<float> alpha = {};  // per texel, 0 to 1; empty if the image has no alpha
+  std::size_t clamped = 0;        // values of the file that were not from 0 to kMaxTexel
   bool from_srgb = false;         // the values were decoded from sRGB codes
 };
 using TexelsPtr = std::shared_ptr<const Texels>;
@@ -65,8 +66,9 @@ PictureFormat picture_format(std::string_view bytes);
 // alpha. The same bytes always give the same texels. The file is decoded in a separate process
 // (core/image/decode/decode_process.h).
 //
-// The size in the header is checked before decoding. Texels must be finite and in 0 to kMaxTexel. Throws
-// InputError (pointer "") with the value and the limit, and the errors of decode_in_process().
+// The size in the header is checked before decoding. Values outside of 0 to kMaxTexel, of which there may be
+// 1 %, are clamped, and NaN becomes 0. Throws InputError (pointer "") with the value and the limit, and the
+// errors of decode_in_process().
 Texels read_picture(std::string_view bytes, const PictureLimits& limits = {});
 
 }  // namespace orrery
