@@ -21,7 +21,8 @@ constexpr std::size_t kMaxNamed = 20;  // extensions that notes name
 
 // Extensions that are supported, except those of materials.
 constexpr std::string_view kSupported[] = {"KHR_mesh_quantization", "EXT_meshopt_compression",
-                                           "KHR_draco_mesh_compression", "KHR_lights_punctual"};
+                                           "KHR_draco_mesh_compression", "KHR_lights_punctual",
+                                           "EXT_texture_webp"};
 
 bool is_supported(std::string_view extension) {
   return std::find(std::begin(kSupported), std::end(kSupported), extension) != std::end(kSupported);
