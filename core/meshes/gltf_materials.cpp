@@ -12,13 +12,13 @@
 
 // glTF 2.0 (Khronos, ISO/IEC 12113:2022): section 3.8 (texture data) and section 3.9 (materials). Extensions:
 // KHR_texture_transform, KHR_materials_emissive_strength, KHR_materials_unlit, KHR_materials_ior,
-// KHR_materials_specular without its textures.
+// KHR_materials_specular, KHR_materials_transmission and KHR_materials_volume without their textures.
 namespace orrery {
 namespace {
 
-constexpr std::string_view kExtensions[] = {"KHR_texture_transform", "KHR_materials_emissive_strength",
-                                            "KHR_materials_unlit", "KHR_materials_ior",
-                                            "KHR_materials_specular"};
+constexpr std::string_view kExtensions[] = {
+    "KHR_texture_transform",  "KHR_materials_emissive_strength", "KHR_materials_unlit", "KHR_materials_ior",
+    "KHR_materials_specular", "KHR_materials_transmission",      "KHR_materials_volume"};
 constexpr std::size_t kMaxNotes = 20;  // notes about images
 constexpr double kMaxEmission = 1e6;   // factor of emission; larger ones are reduced
 
@@ -60,6 +60,7 @@ class MaterialReader {
     const auto report = [&](std::size_t count, const char* what) {
       if (count > 0) note(grouped(count) + what);
     };
+    report(transmission_textures_, " textures of KHR_materials_transmission are not modelled");
     report(specular_textures_, " textures of KHR_materials_specular are not modelled");
     report(mixed_sets_, " materials use two sets of texture coordinates, of which one is modelled");
     return std::move(found_);
@@ -84,14 +85,37 @@ class MaterialReader {
     if (const auto mode = json.find("alphaMode")) material.alpha = alpha_of(*mode);
     material.cutoff = number_or(json, "alphaCutoff", 0.5, 0, std::numeric_limits<double>::max());
     material.normal_reflectance = read_normal_reflectance(json);
+    material.ior = read_ior(json);
+    read_transmission(json, material);
     material.unlit = extension_of(json, "KHR_materials_unlit").has_value();
+  }
+
+  // The filter per metre is the attenuation colour to the power of 1 / attenuation distance.
+  void read_transmission(const GltfValue& json, ModelMaterial& material) {
+    const auto transmission = extension_of(json, "KHR_materials_transmission");
+    if (!transmission) return;
+    material.transmission = number_or(*transmission, "transmissionFactor", 0, 0, 1);
+    if (transmission->find("transmissionTexture")) ++transmission_textures_;
+    const auto volume = extension_of(json, "KHR_materials_volume");
+    if (!volume || !(number_or(*volume, "thicknessFactor", 0, 0, kMaxDistance) > 0)) return;
+    material.has_volume = true;
+    const Vec3d color = color_or(*volume, "attenuationColor", Vec3d(1));
+    const auto distance = volume->find("attenuationDistance");
+    if (!distance) return;
+    const double metres = number_or(*volume, "attenuationDistance", 0, 0, kMaxDistance);
+    if (!(metres > 0)) distance->fail("must be greater than 0 (got 0)");
+    material.filter = {std::pow(color.x, 1 / metres), std::pow(color.y, 1 / metres),
+                       std::pow(color.z, 1 / metres)};
+  }
+
+  static double read_ior(const GltfValue& json) {
+    const auto ior = extension_of(json, "KHR_materials_ior");
+    return ior ? number_or(*ior, "ior", 1.5, 0, kMaxIor) : 1.5;
   }
 
   // The reflectance of a dielectric with an index n is ((n - 1) / (n + 1))^2. An index of 0 makes it 1.
   Vec3d read_normal_reflectance(const GltfValue& json) {
-    double index = 1.5;
-    if (const auto ior = extension_of(json, "KHR_materials_ior"))
-      index = number_or(*ior, "ior", 1.5, 0, kMaxIor);
+    const double index = read_ior(json);
     const double root = (index - 1) / (index + 1);
     Vec3d reflectance(index == 1.5 ? 0.04 : root * root);
     const auto specular = extension_of(json, "KHR_materials_specular");
@@ -205,13 +229,13 @@ class MaterialReader {
   }
 
   static constexpr std::uint64_t kRepeat = 10497, kMaxSet = 7;
-  static constexpr double kMaxScale = 1e5, kMaxAngle = 1e6, kMaxIor = 1e6;
+  static constexpr double kMaxScale = 1e5, kMaxAngle = 1e6, kMaxIor = 1e6, kMaxDistance = 1e12;
 
   GltfFile& file_;
   GltfMaterials found_;
   std::map<std::uint64_t, std::optional<int>> images_;  // by image of the file
   std::optional<int> uv_set_;                           // set of the current material
-  std::size_t bad_images_ = 0, mixed_sets_ = 0, specular_textures_ = 0;
+  std::size_t bad_images_ = 0, mixed_sets_ = 0, specular_textures_ = 0, transmission_textures_ = 0;
 };
 
 }  // namespace

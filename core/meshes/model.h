@@ -56,6 +56,13 @@ struct ModelMaterial {
   double opacity = 1;   // factor of the alpha of the texture of `base_color`
   double cutoff = 0.5;  // Alpha::mask: surfaces with a lower alpha are not there
   bool unlit = false;
+  // Share of the light that passes the surface instead of the base. Light is refracted by `ior` and filtered
+  // by `filter`, per metre, if the surface encloses a volume. Otherwise it passes straight on, multiplied by
+  // the base colour.
+  double transmission = 0;
+  bool has_volume = false;
+  double ior = 1.5;
+  Vec3d filter{1};
 };
 
 // Camera of a model, in the axes of the file.

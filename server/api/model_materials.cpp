@@ -69,7 +69,9 @@ class ModelWriter {
     const ModelMaterial& from = model_.materials[static_cast<std::size_t>(index)];
     const bool colored = has(index, &MeshPart::has_colors);
     Json json{{"type", "metallic-roughness"}};
-    if (from.unlit) {  // shows its colour in any light
+    if (from.transmission > 0 && !from.unlit) {
+      json = transmitting(from);
+    } else if (from.unlit) {  // shows its colour in any light
       json = {{"type", "lambert"}, {"reflectance", 0}, {"emission", color_of(from.base_color, colored)}};
     } else {
       json["base_color"] = color_of(from.base_color, colored);
@@ -85,6 +87,23 @@ class ModelWriter {
     }
     add_opacity(from, json);
     return add_material(from.name, std::move(json));
+  }
+
+  // Returns glass for a surface that encloses a volume and transmits at least half of the light. A thin
+  // surface is a pane without refraction. The index of refraction of glass has limits.
+  static Json transmitting(const ModelMaterial& from) {
+    if (from.has_volume && from.transmission >= 0.5)
+      return {{"type", "glass"},
+              {"ior", std::clamp(from.ior, 1.0, 10.0)},
+              {"roughness", from.roughness.factor},
+              {"filter", numbers(from.filter)}};
+    return {{"type", "transparent"},
+            {"blend", "filtered"},
+            {"kt", from.transmission},
+            {"transmission_color", numbers(from.base_color.factor)},
+            {"kd", 1 - from.transmission},
+            {"diffuse_color", numbers(from.base_color.factor)},
+            {"ka", 0}};
   }
 
   void add_opacity(const ModelMaterial& from, Json& json) {

@@ -1,0 +1,175 @@
+#include "server/api/view_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/image/encode/files.h"
+#include "core/load/load.h"
+#include "core/params/json.h"
+#include "tests/meshes/writers.h"
+#include "tests/support/pictures.h"
+#include "tests/support/random.h"
+
+// Images of glTF models, through the scene that a view writes.
+namespace orrery {
+namespace {
+
+using Code = std::array<unsigned char, 3>;
+
+// Returns the light of a code (IEC 61966-2-1).
+double light_of(unsigned char code) {
+  const double x = code / 255.0;
+  return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
+}
+
+// Square image of random codes.
+struct Card {
+  int side;
+  std::vector<Code> codes;  // top row first
+
+  explicit Card(int of_side) : side(of_side) {
+    test::Random random(7);
+    for (int i = 0; i < side * side; ++i) {
+      const auto code = [&] { return static_cast<unsigned char>(random.unit() * 256); };
+      codes.push_back({code(), code(), code()});
+    }
+  }
+  const Code& at(int x, int y) const { return codes[static_cast<std::size_t>(y * side + x)]; }
+  std::string png() const {
+    Image image(side, side, PixelFormat::srgb8);
+    std::memcpy(image.bytes().data(), codes.data(), codes.size() * 3);
+    return encode_png(image);
+  }
+};
+
+// Returns the model of a square of side 2 that faces +z. Its texture coordinates are from 0 to `repeats`,
+// with (0, 0) at the upper left, as in glTF. `material`: members of the material. `rest`: other members.
+MeshModel card_model(const Card& card, double repeats, const std::string& material,
+                     const std::string& rest = "") {
+  test::Gltf gltf;
+  gltf.positions({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}});
+  const auto r = static_cast<float>(repeats);
+  gltf.add<float>({0, r, r, r, r, 0, 0, 0}, "VEC2", 5126);
+  gltf.add<std::uint16_t>({0, 1, 2, 0, 2, 3}, "SCALAR", 5123);
+  return read_model(gltf.glb(
+      R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1},"indices":2,)"
+      R"("material":0}]}],"materials":[{)" +
+      material + R"(}],"images":[{"uri":"data:image/png;base64,)" + test::base64_of(card.png()) + "\"}]" +
+      rest));
+}
+
+// Renders the front of a model without perspective, one sample at the centre of each pixel. The margin is a
+// 20th of the image on each side.
+test::Picture front_of(const MeshModel& model, int side) {
+  ViewOptions options;
+  options.orthographic = true;
+  const nlohmann::ordered_json scene = view_scene(model, {"file", "model", "Model"}, options, side, side);
+  RenderRequest request = test::in_double(test::size(side, side));
+  request.technique = "raycast";
+  request.samples = 1;
+  const auto shared = std::make_shared<const MeshModel>(model);
+  return test::render(load_scene(document_of(scene), OneModel(shared)), request);
+}
+
+const std::string kUnlit =
+    R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0}},"extensions":{"KHR_materials_unlit":{}})";
+
+void expect_codes(const test::Picture& seen, const std::function<const Code&(int x, int y)>& code_at) {
+  const int side = seen.width - seen.width / 10, margin = seen.width / 20;
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) {
+      const Vec3f& light = seen.at(margin + x, margin + y);
+      const Code& code = code_at(x, y);
+      ASSERT_NEAR(double{light.x}, light_of(code[0]), 2e-6) << x << ' ' << y;
+      ASSERT_NEAR(double{light.y}, light_of(code[1]), 2e-6) << x << ' ' << y;
+      ASSERT_NEAR(double{light.z}, light_of(code[2]), 2e-6) << x << ' ' << y;
+    }
+}
+
+// With one texel for each pixel, an unlit texture shows its codes, upright and not mirrored.
+TEST(ViewScene, ShowsTexelsOfUnlitMaterials) {
+  const Card card(18);
+  const MeshModel model = card_model(card, 1, kUnlit, R"(,"textures":[{"source":0}])");
+  expect_codes(front_of(model, 20), [&](int x, int y) -> const Code& { return card.at(x, y); });
+}
+
+// Three repetitions of a card of 6 texels along u and v, which may wrap differently.
+TEST(ViewScene, WrapsTexturesAsSamplersState) {
+  const Card card(6);
+  const std::pair<int, std::function<int(int)>> modes[] = {
+      {10497, [](int i) { return i % 6; }},
+      {33648, [](int i) { return i / 6 % 2 == 1 ? 5 - i % 6 : i % 6; }},
+      {33071, [](int i) { return std::min(i, 5); }}};
+  for (const auto& [u, along_u] : modes)
+    for (const auto& [v, along_v] : modes) {
+      const MeshModel model = card_model(card, 3, kUnlit,
+                                         R"(,"textures":[{"source":0,"sampler":0}],"samplers":[{"wrapS":)" +
+                                             std::to_string(u) + R"(,"wrapT":)" + std::to_string(v) + "}]");
+      expect_codes(front_of(model, 20),
+                   [&](int x, int y) -> const Code& { return card.at(along_u(x), along_v(y)); });
+    }
+}
+
+// KHR_texture_transform with a rotation of a quarter maps (u, v) of glTF to (v, 1 - u), moved back by its
+// offset: texel (x, y) appears at the place where (v, -u + 1) is its place.
+TEST(ViewScene, TurnsTextures) {
+  const Card card(18);
+  const std::string material =
+      R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0,"extensions":{"KHR_texture_transform":)"
+      R"({"rotation":1.5707963267948966,"offset":[0,1]}}}},"extensions":{"KHR_materials_unlit":{}})";
+  const MeshModel model = card_model(card, 1, material, R"(,"textures":[{"source":0}])");
+  expect_codes(front_of(model, 20), [&](int x, int y) -> const Code& { return card.at(y, 17 - x); });
+}
+
+TEST(ViewScene, UsesCamerasAndLightsOfTheFile) {
+  const Card card(2);
+  const MeshModel model = card_model(
+      card, 1, R"("name":"m")",
+      R"(,"cameras":[{"name":"near","type":"perspective","perspective":{"yfov":0.5,"znear":0.1}},)"
+      R"({"type":"orthographic","orthographic":{"xmag":1,"ymag":1.5,"znear":0,"zfar":9}}])"
+      R"(,"extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","intensity":6.283185307179586}]}})");
+  EXPECT_TRUE(model.cameras.empty());  // no node has a camera
+  ViewOptions options;
+  options.camera = "near";
+  EXPECT_THROW(view_scene(model, {"file", "model", "Model"}, options, 64, 64), InputError);
+  options.camera.clear();
+  options.file_light = true;
+  EXPECT_THROW(view_scene(model, {"file", "model", "Model"}, options, 64, 64), InputError);
+
+  MeshModel with_both = model;
+  with_both.cameras = {{"near", {0, 0, 4}, {0, 0, -1}, {0, 1, 0}, 30, 0},
+                       {"flat", {0, 0, 9}, {0, 0, -1}, {0, 1, 0}, 0, 3}};
+  ModelLight light{ModelLight::Kind::point, {0, 0, 2}, {0, 0, -1}, Vec3d(8 * std::numbers::pi)};
+  with_both.lights = {light};
+  for (const char* camera : {"near", "1"}) {
+    options.camera = camera;
+    const auto scene = view_scene(with_both, {"file", "model", "Model"}, options, 64, 64);
+    EXPECT_EQ(scene["camera"]["type"], camera[0] == 'n' ? "perspective" : "orthographic");
+    EXPECT_EQ(scene["camera"]["look_at"], (nlohmann::ordered_json{0.0, 0.0, 0.0}));
+    EXPECT_EQ(scene["lights"].size(), 1);
+    EXPECT_EQ(scene["lights"][0]["intensity"][0], 8.0);
+  }
+}
+
+TEST(ViewScene, MakesGlassOfTransmittingVolumes) {
+  const Card card(2);
+  const auto material_of = [&](const std::string& extensions) {
+    const MeshModel model = card_model(card, 1, R"("extensions":{)" + extensions + "}");
+    return view_scene(model, {"file", "model", "Model"}, {}, 64, 64)["materials"]["material"];
+  };
+  const auto glass = material_of(
+      R"("KHR_materials_transmission":{"transmissionFactor":1},"KHR_materials_ior":{"ior":1.33},)"
+      R"("KHR_materials_volume":{"thicknessFactor":1,"attenuationDistance":0.5,"attenuationColor":[0.5,1,0.25]})");
+  EXPECT_EQ(glass["type"], "glass");
+  EXPECT_EQ(glass["ior"], 1.33);
+  EXPECT_NEAR(glass["filter"][0].get<double>(), 0.25, 1e-15);
+  EXPECT_NEAR(glass["filter"][2].get<double>(), 0.0625, 1e-15);
+  const auto pane = material_of(R"("KHR_materials_transmission":{"transmissionFactor":0.75})");
+  EXPECT_EQ(pane["type"], "transparent");
+  EXPECT_EQ(pane["kt"], 0.75);
+}
+
+}  // namespace
+}  // namespace orrery
