@@ -80,7 +80,7 @@ TEST(WebP, ReadsLossyAndLosslessFiles) {
 TEST(WebP, ReadsLargeFiles) {
   for (const int channels : {3, 4})
     for (const bool lossless : {false, true})
-      EXPECT_EQ(read_picture(webp_of(pattern(2048, 1500, channels, true), lossless)).width, 2048);
+      EXPECT_EQ(read_picture(webp_of(pattern(1500, 700, channels, true), lossless)).width, 1500);
 }
 
 TEST(WebP, RejectsDamagedFiles) {
