@@ -158,7 +158,8 @@ class LibraryReader {
       text_.word_of_line();
     } else {
       const std::string_view value = text_.word_of_line();
-      if (option == "-clamp" && value == "on") map.texture.wrap = ModelTexture::Wrap::clamp;
+      if (option == "-clamp" && value == "on")
+        map.texture.wrap = map.texture.wrap_v = ModelTexture::Wrap::clamp;
     }
   }
 

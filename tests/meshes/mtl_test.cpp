@@ -69,7 +69,8 @@ TEST(Mtl, ReadsMapsWithOptions) {
   ASSERT_EQ(found.images.size(), 3u);
   const ModelMaterial& m = found.materials.at(0);
   ASSERT_TRUE(m.base_color.texture && m.emission.texture && m.roughness.texture && m.normal);
-  EXPECT_EQ(*m.base_color.texture, (ModelTexture{0, ModelTexture::Wrap::clamp, {2, 3}, {0.5, 0}}));
+  EXPECT_EQ(*m.base_color.texture,
+            (ModelTexture{0, ModelTexture::Wrap::clamp, ModelTexture::Wrap::clamp, {2, 3}, {0.5, 0}}));
   EXPECT_EQ(m.base_color.factor, Vec3d(1));
   EXPECT_EQ(*m.emission.texture, ModelTexture{1});
   EXPECT_EQ(m.emission.factor, Vec3d(1));
