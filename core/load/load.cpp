@@ -273,7 +273,7 @@ class SceneReader {
     int index;  // within the set
     std::string name;
     SurfaceParams surface;
-    std::vector<TextureUse> uses;  // of the parameters of the type, without material numbers
+    std::vector<TextureUse> uses;  // parameters of the type, without material numbers
   };
 
   void read_texture(const std::string& name, Params& p) {

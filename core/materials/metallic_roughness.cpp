@@ -15,7 +15,7 @@ void MetallicRoughnessInputs<double>::read(MaterialParams& p) {
   p.coefficient(base_color, "base_color",
                 "Albedo of the dielectric base, or reflectance of the metal, 0 to 1 per channel.", Vec3d(0.8),
                 1);
-  constexpr double kDielectric = 0.04;  // of glTF: an index of refraction of 1.5
+  constexpr double kDielectric = 0.04;  // default of glTF: an index of refraction of 1.5
   p.coefficient(normal_reflectance, "normal_reflectance",
                 "Reflectance of the dielectric along the normal, 0 to 1 per channel.", Vec3d(kDielectric), 1);
   p.number(metallic, "metallic", "Metalness: 0 for a dielectric, 1 for a metal.", {.min = 0, .max = 1}, 0.0);

@@ -47,7 +47,7 @@ struct ModelMaterial {
   std::string name;
   ModelValue<Vec3d> base_color{Vec3d(1)};
   ModelValue<double> metallic{0}, roughness{1};
-  Vec3d normal_reflectance{0.04};  // of the dielectric
+  Vec3d normal_reflectance{0.04};  // reflectance of the dielectric
   Channel metallic_channel = Channel::blue, roughness_channel = Channel::green;
   ModelValue<Vec3d> emission{Vec3d(0)};
   // `factor` multiplies the tangential part of the normal.

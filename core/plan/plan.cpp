@@ -11,12 +11,12 @@
 #include "core/cameras/pixel_filter.h"
 #include "core/channels/registry.h"
 #include "core/image/srgb.h"
+#include "core/plan/explain_materials.h"
 #include "core/plan/eye_media.h"
 #include "core/plan/options.h"
 #include "core/plan/rounding.h"
 #include "core/plan/warnings.h"
 #include "core/techniques/registry.h"
-#include "core/textures/mapping.h"
 
 namespace orrery {
 namespace {
@@ -46,8 +46,7 @@ class Planner {
       const auto& [first, last] = scene_.motion;
       decide("time", seconds(plan_.time), "the motion runs from " + seconds(first) + " to " + seconds(last));
     }
-    explain_textures();
-    explain_opacity();
+    explain_materials(scene_, plan_);
     choose_terminator();
     open_shutter();
     choose_filter();
@@ -136,35 +135,6 @@ class Planner {
     if (*asked.seconds > 0) decide("seconds", "at most " + seconds(*asked.seconds), "as specified");
     if (plan_.free_samples)
       decide("samples", "at most " + std::to_string(plan_.samples), "chosen by the budget");
-  }
-
-  // Adds a decision for each texture in use.
-  void explain_textures() {
-    for (std::size_t i = 0; i < scene_.textures.size(); ++i) {
-      bool colours = false, bumps = false;
-      for (const TextureUse& use : scene_.texture_uses)
-        if (use.texture == static_cast<int>(i))
-          (use.slot == kBumpSlot || use.slot == kNormalSlot ? bumps : colours) = true;
-      const PlacedTexture& texture = scene_.textures[i];
-      const std::string what = "texture " + texture.name;
-      if (!colours && !bumps) {
-        decide(what, "none", "no material uses it");
-        continue;
-      }
-      decide(what, texture.type,
-             std::string(name_of(texture.mapping.kind)) + " mapping, " +
-                 (texture.filtered ? "averaged over the pixel" : "not filtered") +
-                 (bumps ? colours ? "; values and bumps" : "; bumps" : ""));
-    }
-  }
-
-  void explain_opacity() {
-    if (!scene_.facts.cutouts) return;
-    if (plan_.technique->rasterizes)
-      return decide("opacity", "ignored",
-                    std::string(plan_.technique->name) + " draws every surface; raycast does not",
-                    Bound::unknown());
-    decide("opacity", "rays pass", "a material in use has an opacity below 1");
   }
 
   // Smooth meshes need the normals of their vertices if light sources light an opaque material.

@@ -28,7 +28,7 @@ Examples:
 Renders an OBJ, PLY, STL, 3MF or glTF file without a scene: frames the model
 exactly, lights it evenly and from the upper left. Images have 512 x 512 pixels
 and an RMS error of 0.02, unless options set the size, samples, error or time.
-A ZIP archive is read as the one model in it, with the files that the model names.
+A ZIP archive is read as the one model in it, with the files that it names.
 --print-scene prints the scene instead, which orrery render accepts.
 )";
 

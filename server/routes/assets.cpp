@@ -103,8 +103,9 @@ void add_assets_routes(Router& router, App& app) {
       .add("PUT", "/v1/assets/{sha256}", Scope::write, LogLevel::info, body,
            [&app](Request& request) { return put_asset(app, request); })
       .describe({.id = "keep_asset",
-                 .summary = "Stores a mesh (OBJ, PLY, STL, 3MF, glTF, ZIP) or an image (EXR, HDR, PNG, JPEG, WebP) "
-                            "under its SHA-256",
+                 .summary =
+                     "Stores a mesh (OBJ, PLY, STL, 3MF, glTF, ZIP) or an image (EXR, HDR, PNG, JPEG, WebP) "
+                     "under its SHA-256",
                  .description = "A ZIP archive contains one model and the files that the model names",
                  .parameters = {kAssetId},
                  .body = {"*/*"},

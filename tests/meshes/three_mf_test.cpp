@@ -110,7 +110,7 @@ TEST(ThreeMf, FindsPartsOfThePackage) {
             corners_of(two_triangles()));
   EXPECT_THAT(problem(Zip().add("3D/3dmodel.model", outer).bytes()),
               HasSubstr("model part \"3d/parts/a.model\" is missing in the archive"));
-  EXPECT_THAT(problem(Zip().add("a.obj", "v 0 0 0").bytes()), HasSubstr("must be an OBJ, PLY, STL"));
+  EXPECT_THAT(problem(Zip().add("a.txt", "v 0 0 0").bytes()), HasSubstr("archive must contain a model"));
 }
 
 TEST(ThreeMf, BoundsNestingAndRepetition) {

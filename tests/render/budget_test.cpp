@@ -299,9 +299,9 @@ TEST(ErrorBudget, ReportsUnprovableError) {
 
 TEST(ErrorBudget, StopsAtRayLimit) {
   const auto scene = test::load(test::sample("cornell-box"));
-  const RenderResult result = rendered(scene, with_error(64, 0.03, Space::display), {.max_rays = 1e6});
+  const RenderResult result = rendered(scene, with_error(64, 0.03, Space::display), {.max_rays = 3e5});
   EXPECT_FALSE(result.budget->met());
-  EXPECT_LE(static_cast<double>(result.stats.counts.rays.total()), 1e6);
+  EXPECT_LE(static_cast<double>(result.stats.counts.rays.total()), 3e5);
   EXPECT_NE(result.budget->reason.find("(limit "), std::string::npos) << result.budget->reason;
 }
 

@@ -107,6 +107,29 @@ void mirror_instance(Json& instance) {
   turn["degrees"] = -turn.value("degrees", 0.0);
 }
 
+// Multiplies a number or a list of numbers.
+void scale_value(Json& value, double factor) {
+  if (!value.is_array())
+    value = value.get<double>() * factor;
+  else
+    for (Json& entry : value) entry = entry.get<double>() * factor;
+}
+
+// Scales the lengths of the mapping of a texture, including those that are missing.
+void scale_mapping(Json& mapping, double factor) {
+  const std::string type = mapping.value("type", "uv");
+  const auto scale = [&](const char* key, const Json& fallback) {
+    mapping[key] = mapping.value(key, fallback);
+    scale_value(mapping[key], factor);
+  };
+  mapping["type"] = type;
+  if (type != "uv") scale("origin", {0, 0, 0});
+  if (type == "planar") scale("u_edge", {1, 0, 0});
+  if (type == "planar") scale("v_edge", {0, 1, 0});
+  if (type == "cylindrical") scale("height", 1);
+  if (type == "solid") scale("size", 1);
+}
+
 std::string text_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in) throw std::runtime_error("cannot read " + file.string() + ": tests run in the repository root");
@@ -163,6 +186,12 @@ Json scaled(Json scene, double factor) {
   if (scene.contains("models"))
     for (Json& model : scene["models"])
       for (Json& object : model["objects"]) change_members(object, scale_by(factor));
+  if (scene.contains("textures"))
+    for (Json& texture : scene["textures"]) scale_mapping(texture["mapping"], factor);
+  for (Json& material : scene["materials"]) {
+    if (material.contains("bump")) scale_value(material["bump"]["scale"], factor);
+    if (material.contains("mean_free_path")) scale_value(material["mean_free_path"], factor);
+  }
   return scene;
 }
 
