@@ -15,30 +15,37 @@ std::size_t drop_degenerate(TriangleMesh& mesh) {
   });
 }
 
+// Groups the edges by their lower position with a counting sort. A group has about six edges.
 bool is_watertight(std::span<const std::array<std::uint32_t, 3>> triangles, const PositionIndices& places) {
   struct Edge {
-    std::uint32_t low, high;
-    int direction;  // 1: from low to high
+    std::uint32_t high;
+    std::int32_t direction;  // 1: from low to high
   };
-  std::vector<Edge> edges;
-  edges.reserve(3 * triangles.size());
-  for (const auto& triangle : triangles) {
-    checkpoint();
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t from = places[triangle[k]], to = places[triangle[(k + 1) % 3]];
-      if (from != to) edges.push_back({std::min(from, to), std::max(from, to), from < to ? 1 : -1});
+  const auto for_each_edge = [&](const auto& visit) {
+    for (const auto& triangle : triangles) {
+      checkpoint();
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t from = places[triangle[k]], to = places[triangle[(k + 1) % 3]];
+        if (from != to) visit(std::min(from, to), Edge{std::max(from, to), from < to ? 1 : -1});
+      }
     }
-  }
-  const auto before = [](const Edge& a, const Edge& b) {
-    return a.low != b.low ? a.low < b.low : a.high < b.high;
   };
-  std::sort(edges.begin(), edges.end(), before);
-  int sum = 0;
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    checkpoint(i);
-    sum += edges[i].direction;
-    if (i + 1 < edges.size() && !before(edges[i], edges[i + 1])) continue;
-    if (sum != 0) return false;
+  std::vector<std::size_t> end(places.size() + 1, 0);  // by lower position; first the begin of its group
+  for_each_edge([&](std::uint32_t low, const Edge&) { ++end[low + 1]; });
+  for (std::size_t i = 1; i < end.size(); ++i) end[i] += end[i - 1];
+  std::vector<Edge> edges(end.back());
+  for_each_edge([&](std::uint32_t low, const Edge& edge) { edges[end[low]++] = edge; });
+  auto first = edges.begin();
+  for (std::size_t low = 0; low < places.size(); ++low) {
+    checkpoint(low);
+    const auto last = edges.begin() + static_cast<std::ptrdiff_t>(end[low]);
+    std::sort(first, last, [](const Edge& a, const Edge& b) { return a.high < b.high; });
+    std::int64_t sum = 0;
+    for (; first != last; ++first) {
+      sum += first->direction;
+      const bool ends = first + 1 == last || first[1].high != first->high;
+      if (ends && sum != 0) return false;
+    }
   }
   return !edges.empty();
 }

@@ -88,8 +88,10 @@ Vec3d corner_normal(std::uint32_t corner, const Corners& corners, const Facets& 
 }  // namespace
 
 PositionIndices position_indices_of(const std::vector<Vec3d>& positions) {
-  PositionIndices places(positions.size(), 0);
-  split_position_indices(places, positions);
+  PositionIndices places;
+  places.reserve(positions.size());
+  VertexList distinct(false, false);
+  for (const Vec3d& position : positions) places.push_back(distinct.add({position, {}, {}}));
   return places;
 }
 
@@ -114,11 +116,18 @@ void smooth_normals(TriangleMesh& mesh, double crease_degrees, const PositionInd
   const double min_cosine = sine_cosine_degrees(crease_degrees).cosine;
   VertexList vertices(true, !mesh.uvs.empty(), !mesh.colors.empty());
   std::vector<std::array<std::uint32_t, 3>> triangles = mesh.triangles;
+  constexpr std::uint32_t kNone = ~0u;
+  std::vector<std::uint32_t> last(mesh.positions.size(), kNone);  // new number of a vertex at its last corner
   for (std::uint32_t t = 0; t < triangles.size(); ++t)
     for (std::uint32_t k = 0; k < 3; ++k) {
-      Vertex vertex = vertex_of(mesh, triangles[t][k]);
-      vertex.normal = corner_normal(3 * t + k, corners, facets, min_cosine);
-      triangles[t][k] = vertices.add(vertex);
+      const std::uint32_t old = triangles[t][k];
+      const Vec3d normal = corner_normal(3 * t + k, corners, facets, min_cosine);
+      if (last[old] == kNone || vertices.normal(last[old]) != normal) {
+        Vertex vertex = vertex_of(mesh, old);
+        vertex.normal = normal;
+        last[old] = vertices.add(vertex);
+      }
+      triangles[t][k] = last[old];
     }
   mesh = vertices.take();
   mesh.triangles = std::move(triangles);

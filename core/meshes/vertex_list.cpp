@@ -13,8 +13,10 @@ std::uint32_t VertexList::add(const Vertex& vertex) {
   const std::size_t used = with_colors_ ? words.size() : with_normals_ || with_uvs_ ? 8 : 3;
   const std::uint32_t hash = table_.hash(std::span(words).first(used));
   const std::size_t before = size();
-  const std::uint32_t at = table_.find_or_add(
-      hash, before, [&](std::uint32_t entry) { return vertex_of(mesh_, entry) == vertex; });
+  const std::uint32_t at = table_.find_or_add(hash, before, [&](std::uint32_t entry) {
+    return mesh_.positions[entry] == p && (!with_normals_ || mesh_.normals[entry] == n) &&
+           (!with_uvs_ || mesh_.uvs[entry] == vertex.uv) && (!with_colors_ || mesh_.colors[entry] == c);
+  });
   if (at == before) {
     mesh_.positions.push_back(p);
     if (with_normals_) mesh_.normals.push_back(n);

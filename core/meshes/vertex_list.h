@@ -33,6 +33,8 @@ class VertexList {
   // `vertex` is finite, values that the list does not store are 0, and the list has fewer than 2^31 vertices.
   std::uint32_t add(const Vertex& vertex);
   std::size_t size() const { return mesh_.positions.size(); }
+  // Returns the normal of a vertex. REQUIRES: the list stores normals.
+  const Vec3d& normal(std::uint32_t vertex) const { return mesh_.normals[vertex]; }
   // Moves the vertices out, as a mesh without triangles. The list must not be used afterwards.
   TriangleMesh take() { return std::move(mesh_); }
 
