@@ -22,9 +22,9 @@ using Json = nlohmann::ordered_json;
 constexpr int kSize = 512;
 constexpr double kFieldOfView = 30, kMargin = 0.05, kCreaseDegrees = 30, kMaxError = 0.02;
 // Radiance of the surroundings, and intensity and place of the key light relative to the camera.
-constexpr double kSurroundings = 0.6, kKeyLight = 0.5, kKeyAzimuth = -40, kKeyElevation = 50, kKeyWidth = 15;
+constexpr double kSurroundings = 0.5, kKeyLight = 0.7, kKeyAzimuth = -40, kKeyElevation = 50, kKeyWidth = 15;
 constexpr double kFill = 0.02;  // radiance of the surroundings with the lights of the file
-constexpr double kModelReflectance = 0.6;
+constexpr double kModelReflectance = 0.3;
 
 struct NamedDirection {
   std::string_view name;
