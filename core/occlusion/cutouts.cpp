@@ -72,7 +72,8 @@ class Opacities {
     std::uint64_t state =
         static_cast<std::uint64_t>(point.primitive) << 16 | static_cast<std::uint64_t>(point.passed);
     const auto mix = [&](T x) {
-      state += 0x9e3779b97f4a7c15 + std::bit_cast<std::uint64_t>(static_cast<double>(x));
+      const auto bits = std::bit_cast<std::uint64_t>(static_cast<double>(x));
+      state += 0x9e3779b97f4a7c15 + (bits << 12 | bits >> 63);  // without the exponent: independent of units
       state = (state ^ (state >> 30)) * 0xbf58476d1ce4e5b9;
       state = (state ^ (state >> 27)) * 0x94d049bb133111eb;
       state ^= state >> 31;

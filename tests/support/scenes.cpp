@@ -187,7 +187,8 @@ Json scaled(Json scene, double factor) {
     for (Json& model : scene["models"])
       for (Json& object : model["objects"]) change_members(object, scale_by(factor));
   if (scene.contains("textures"))
-    for (Json& texture : scene["textures"]) scale_mapping(texture["mapping"], factor);
+    for (Json& texture : scene["textures"])
+      if (texture.contains("mapping")) scale_mapping(texture["mapping"], factor);
   for (Json& material : scene["materials"]) {
     if (material.contains("bump")) scale_value(material["bump"]["scale"], factor);
     if (material.contains("mean_free_path")) scale_value(material["mean_free_path"], factor);
