@@ -3,6 +3,7 @@
 #include <meshoptimizer.h>
 
 #include "core/base/shorten.h"
+#include "core/meshes/text.h"
 
 // EXT_meshopt_compression (Khronos, ratified 2021). The KHR variant of 2025 adds an encoding and a filter
 // that libmeshoptimizer 0.18 cannot decode.
