@@ -67,7 +67,9 @@ class SceneReader {
     mesh_.notes = std::move(materials_.notes);
     const auto list = file_.root().find("animations");
     if (list && list->size() > 0 && !pose_)
-      mesh_.notes.push_back("the model is at rest; number of animations: " + grouped(list->size()));
+      mesh_.notes.push_back(list->size() == 1 ? "the model is at rest, without its animation"
+                                              : "the model is at rest, without its " + grouped(list->size()) +
+                                                    " animations");
     if (without_surface_ > 0)
       mesh_.notes.push_back(grouped(without_surface_) + " primitives of points or lines are not rendered");
     if (const auto used = file_.root().find("extensionsUsed"))

@@ -151,7 +151,7 @@ pageTest("the button opens a file by the keyboard, and notes appear in plain wor
   await chooser.setFiles(fileOf("moving.glb", tetrahedronGlb(animated)));
   await title(page, "moving.glb");
   await card(page).waitFor();
-  assert.match(await card(page).textContent(), /Notes on moving\.glb.*1 animations are not modelled\./);
+  assert.match(await card(page).textContent(), /Notes on moving\.glb.*The model is at rest, without its animation\./);
   assert.deepEqual(await axeViolations(page), []);
   await page.locator("#gallery button").nth(1).click();
   await card(page).waitFor({ state: "hidden" });
