@@ -43,17 +43,23 @@ struct View {
   nlohmann::ordered_json scene;
 };
 
-ViewOptions options_of(const ViewFlags& flags) {
-  nlohmann::json given = nlohmann::json::object();
-  for (std::size_t i = 0; i < flags.texts.size(); ++i)
-    if (!flags.texts[i].empty()) given[std::string(view_parameters()[i].key)] = flags.texts[i];
+// Returns make(). Errors name flags instead of keys.
+template <class Make>
+auto naming_flags(const Make& make) {
   try {
-    return read_view_options(document_of(std::move(given)));
+    return make();
   } catch (const InputError& error) {
     std::vector<Problem> problems = error.problems();
     for (Problem& problem : problems) problem.pointer = flag_of(problem.pointer.substr(1));
     throw InputError(std::move(problems));
   }
+}
+
+ViewOptions options_of(const ViewFlags& flags) {
+  nlohmann::json given = nlohmann::json::object();
+  for (std::size_t i = 0; i < flags.texts.size(); ++i)
+    if (!flags.texts[i].empty()) given[std::string(view_parameters()[i].key)] = flags.texts[i];
+  return naming_flags([&] { return read_view_options(document_of(std::move(given))); });
 }
 
 std::string help_of(const ViewParameter& parameter) {
@@ -72,7 +78,9 @@ View view_of(const ViewFlags& flags, const RenderRequest& request) {
     std::cerr << "orrery: warning: " << path << ": " << note << "\n";
   const std::string name = path == "-" ? "model" : std::filesystem::path(path).filename().string();
   const auto [width, height] = view_size(request);
-  view.scene = view_scene(*file.model, {"file", name, name}, options, width, height);
+  view.scene = naming_flags([&] {
+    return view_scene(*file.model, {"file", name, name}, options, width, height);
+  });
   return view;
 }
 
