@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <deque>
 #include <limits>
-#include <map>
 
 #include "core/atmospheres/registry.h"
 #include "core/base/hash.h"
@@ -12,6 +11,7 @@
 #include "core/cameras/registry.h"
 #include "core/environments/registry.h"
 #include "core/lights/registry.h"
+#include "core/load/cached_assets.h"
 #include "core/load/facts.h"
 #include "core/load/media.h"
 #include "core/materials/registry.h"
@@ -75,47 +75,6 @@ void read_camera(Params& p, Scene& scene) {
   else if (!(length(cross(view, placement.up)) > 1e-9))
     replace_up(view, scene);
 }
-
-// Asset source that loads each mesh and image once, even if the scene names it several times.
-class CachedAssetSource final : public AssetSource {
- public:
-  explicit CachedAssetSource(const AssetSource& from) : from_(from) {}
-  MeshModelPtr model_file(const std::string& name, const std::optional<ModelPose>& pose) const override {
-    return once(files_, {name, pose}, [&] { return from_.model_file(name, pose); });
-  }
-  MeshModelPtr model_asset(const std::string& sha256, const std::optional<ModelPose>& pose) const override {
-    return once(assets_, {sha256, pose}, [&] { return from_.model_asset(sha256, pose); });
-  }
-  TexelsPtr picture_file(const std::string& name) const override {
-    return once(picture_files_, name, [&] { return noted(name, from_.picture_file(name)); });
-  }
-  TexelsPtr picture_asset(const std::string& sha256) const override {
-    return once(picture_assets_, sha256, [&] { return noted(sha256, from_.picture_asset(sha256)); });
-  }
-  // Returns notes about images.
-  std::vector<Problem> take_notes() const { return std::move(notes_); }
-
- private:
-  using PosedName = std::pair<std::string, std::optional<ModelPose>>;
-
-  template <class Name, class Asset, class Read>
-  static const Asset& once(std::map<Name, Asset>& assets, const std::type_identity_t<Name>& name,
-                           const Read& read) {
-    const auto known = assets.find(name);
-    return known != assets.end() ? known->second : assets.emplace(name, read()).first->second;
-  }
-  TexelsPtr noted(const std::string& name, TexelsPtr texels) const {
-    if (texels && texels->clamped > 0)
-      notes_.push_back({"", "image " + shortened(name, 80) + " has " + grouped(texels->clamped) +
-                                " values that are negative, too large or no numbers, which were clamped"});
-    return texels;
-  }
-
-  const AssetSource& from_;
-  mutable std::vector<Problem> notes_;
-  mutable std::map<PosedName, MeshModelPtr> files_, assets_;
-  mutable std::map<std::string, TexelsPtr> picture_files_, picture_assets_;
-};
 
 // Reads the objects of a scene or model and records the material of each object.
 class ObjectReader {

@@ -28,21 +28,26 @@ TexelsPtr image_of(const MeshModel& model, std::size_t number) {
 
 }  // namespace
 
+PictureName read_picture_name(Params& p) {
+  const bool is_file = p.form({{"file"}, {"asset"}}) == 0;
+  std::string name =
+      is_file ? p.text("file",
+                       "EXR, HDR, PNG, JPEG or WebP file in or below the scene's folder; command line only.",
+                       kMostNameLength)
+              : p.text("asset", "SHA-256 of an uploaded EXR, HDR, PNG, JPEG or WebP file.", 64);
+  return {is_file ? "file" : "asset", std::move(name), read_image_number(p)};
+}
+
+TexelsPtr picture_of(const AssetSource& source, const PictureName& name) {
+  const bool is_file = name.key == std::string_view("file");
+  if (name.image)
+    return image_of(*(is_file ? source.model_file(name.name) : source.model_asset(name.name)), *name.image);
+  return is_file ? source.picture_file(name.name) : source.picture_asset(name.name);
+}
+
 TexelsPtr read_picture(Params& p, const AssetSource& source) {
-  if (p.form({{"file"}, {"asset"}}) == 0) {
-    const std::string name =
-        p.text("file", "EXR, HDR, PNG, JPEG or WebP file in or below the scene's folder; command line only.",
-               kMostNameLength);
-    const auto image = read_image_number(p);
-    return read_named(p, "file", name, [&](const std::string& n) {
-      return image ? image_of(*source.model_file(n), *image) : source.picture_file(n);
-    });
-  }
-  const std::string name = p.text("asset", "SHA-256 of an uploaded EXR, HDR, PNG, JPEG or WebP file.", 64);
-  const auto image = read_image_number(p);
-  return read_named(p, "asset", name, [&](const std::string& n) {
-    return image ? image_of(*source.model_asset(n), *image) : source.picture_asset(n);
-  });
+  const PictureName name = read_picture_name(p);
+  return read_named(p, name.key, name.name, [&](const std::string&) { return picture_of(source, name); });
 }
 
 }  // namespace orrery

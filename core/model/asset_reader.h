@@ -22,6 +22,17 @@ auto read_named(Params& p, const char* key, const std::string& name, const Read&
 // Largest length of a file name, in bytes.
 inline constexpr std::size_t kMostNameLength = 1024;
 
+// Image that an object of a scene names.
+struct PictureName {
+  const char* key;  // `file` or `asset`
+  std::string name;
+  std::optional<std::size_t> image;  // number of an image in a model file
+};
+PictureName read_picture_name(Params& p);
+
+// Returns the image with a name. Throws the errors of AssetSource.
+TexelsPtr picture_of(const AssetSource& source, const PictureName& name);
+
 // Reads the image that the key `file` or `asset` of the object names. Returns null after a problem.
 TexelsPtr read_picture(Params& p, const AssetSource& source);
 

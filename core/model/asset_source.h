@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <string>
 
 #include "core/base/error.h"
@@ -9,6 +11,9 @@
 #include "core/meshes/model.h"
 
 namespace orrery {
+
+class ImageLevels;  // core/textures/image_map.h
+using ImageLevelsPtr = std::shared_ptr<const ImageLevels>;
 
 // Source of meshes and images that a scene refers to by name. The base class rejects every name. Derived
 // classes read files or look up uploaded assets. Each function throws InputError (pointer "") if the asset is
@@ -29,6 +34,12 @@ class AssetSource {
     refuse_assets();
   }
   virtual TexelsPtr picture_asset(const std::string& /*sha256*/) const { refuse_assets(); }
+  // Returns make(), which computes the levels of an image from this source. `key` identifies the image and
+  // its encoding: sources may keep levels by key. Passes the errors of `make`.
+  virtual ImageLevelsPtr levels(const std::string& /*key*/,
+                                const std::function<ImageLevelsPtr()>& make) const {
+    return make();
+  }
 
  private:
   [[noreturn]] static void refuse_files() {

@@ -13,7 +13,7 @@
 namespace orrery {
 namespace {
 
-using Level = ImagePyramid::Level;
+using Level = ImageLevels::Level;
 
 // Overlaps of `from` texels with half as many texels, rounded up, along one axis.
 struct Halving {
@@ -70,11 +70,18 @@ std::size_t wrapped(std::int64_t i, int size, Wrap wrap) {
 
 }  // namespace
 
-ImagePyramid::ImagePyramid(const TexelsPtr& image, Wrap along_u, Wrap along_v)
-    : along_u_(along_u), along_v_(along_v) {
+ImageLevels::ImageLevels(const TexelsPtr& image) {
   levels_.push_back(
       {image->width, image->height, std::shared_ptr<const std::vector<float>>(image, &image->rgb)});
   while (levels_.back().width > 1 || levels_.back().height > 1) levels_.push_back(next_level(levels_.back()));
+  bounds_ = {Vec3d(std::numeric_limits<double>::infinity()), Vec3d(0)};
+  for (std::size_t k = 0; k < image->rgb.size(); k += 3) {
+    checkpoint(k / 3);
+    const Vec3d texel(image->rgb[k], image->rgb[k + 1], image->rgb[k + 2]);
+    bounds_.least = {std::min(bounds_.least.x, texel.x), std::min(bounds_.least.y, texel.y),
+                     std::min(bounds_.least.z, texel.z)};
+    bounds_.most = largest(bounds_.most, texel);
+  }
 }
 
 template <class T>
@@ -101,11 +108,12 @@ Vec3<T> ImagePyramid::bilinear(const Level& level, T u, T v) const {
 
 template <class T>
 Vec3<T> ImagePyramid::at(T u, T v, T level) const {
-  const T last = static_cast<T>(levels_.size() - 1), place = std::min(level, last), below = std::floor(place);
+  const std::vector<Level>& all = levels();
+  const T last = static_cast<T>(all.size() - 1), place = std::min(level, last), below = std::floor(place);
   const auto index = static_cast<std::size_t>(below);
-  const Vec3<T> fine = bilinear(levels_[index], u, v);
+  const Vec3<T> fine = bilinear(all[index], u, v);
   if (!(place > below)) return fine;
-  return fine + (bilinear(levels_[index + 1], u, v) - fine) * (place - below);
+  return fine + (bilinear(all[index + 1], u, v) - fine) * (place - below);
 }
 
 template Vec3<float> ImagePyramid::at(float, float, float) const;
@@ -146,17 +154,10 @@ class ImageMapKernel final : public TextureKernel<T> {
 
 class ImageMap final : public Texture {
  public:
-  ImageMap(const TexelsPtr& image, Wrap along_u, Wrap along_v, double scale)
-      : image_(std::make_shared<const ImagePyramid>(image, along_u, along_v)), scale_(scale) {
-    bounds_ = {Vec3d(std::numeric_limits<double>::infinity()), Vec3d(0)};
-    for (std::size_t k = 0; k < image->rgb.size(); k += 3) {
-      const Vec3d texel(image->rgb[k], image->rgb[k + 1], image->rgb[k + 2]);
-      bounds_.least = {std::min(bounds_.least.x, texel.x), std::min(bounds_.least.y, texel.y),
-                       std::min(bounds_.least.z, texel.z)};
-      bounds_.most = largest(bounds_.most, texel);
-    }
-    bounds_ = {bounds_.least * scale, bounds_.most * scale};
-  }
+  ImageMap(const ImageLevelsPtr& image, Wrap along_u, Wrap along_v, double scale)
+      : image_(std::make_shared<const ImagePyramid>(image, along_u, along_v)),
+        scale_(scale),
+        bounds_{image->bounds().least * scale, image->bounds().most * scale} {}
   TextureBounds bounds() const override { return bounds_; }
   double detail() const override {
     const auto& finest = image_->levels().front();
@@ -198,8 +199,22 @@ TexelsPtr alpha_of(const TexelsPtr& image) {
   return std::make_shared<const Texels>(std::move(grey));
 }
 
+// Returns the levels of an image. Records a problem and returns null if it cannot be read.
+ImageLevelsPtr read_levels(Params& p, const AssetSource& source, const PictureName& name,
+                           const std::string& encoding) {
+  return read_named(p, name.key, name.name, [&](const std::string&) {
+    const std::string number = name.image ? std::to_string(*name.image) : "";
+    return source.levels(std::string(name.key) + ' ' + encoding + ' ' + number + ' ' + name.name, [&] {
+      const TexelsPtr image = picture_of(source, name);
+      return std::make_shared<const ImageLevels>(encoding == "linear"  ? as_codes(image)
+                                                 : encoding == "alpha" ? alpha_of(image)
+                                                                       : image);
+    });
+  });
+}
+
 std::shared_ptr<const Texture> read_image_map(Params& p, const AssetSource& source) {
-  const TexelsPtr image = read_picture(p, source);
+  const PictureName name = read_picture_name(p);
   const std::string encoding = p.choice("encoding",
                                         "Colours from sRGB codes, codes / 255 as they are, or the alpha of "
                                         "the image as grey. EXR and HDR files are linear.",
@@ -210,14 +225,12 @@ std::shared_ptr<const Texture> read_image_map(Params& p, const AssetSource& sour
                                       derived(std::string_view(wrap)));
   const double scale =
       p.number("scale", "Factor of the values of the image.", {.min = 0, .max = kMaxColor}, 1.0);
-  if (!image) return nullptr;
-  const auto mode_of = [&](const std::string& name) {
-    return static_cast<Wrap>(std::find(kWraps.begin(), kWraps.end(), name) - kWraps.begin());
+  const ImageLevelsPtr levels = read_levels(p, source, name, encoding);
+  if (!levels) return nullptr;
+  const auto mode_of = [&](const std::string& mode) {
+    return static_cast<Wrap>(std::find(kWraps.begin(), kWraps.end(), mode) - kWraps.begin());
   };
-  const TexelsPtr values = encoding == "linear"  ? as_codes(image)
-                           : encoding == "alpha" ? alpha_of(image)
-                                                 : image;
-  return std::make_shared<const ImageMap>(values, mode_of(wrap), mode_of(wrap_v), scale);
+  return std::make_shared<const ImageMap>(levels, mode_of(wrap), mode_of(wrap_v), scale);
 }
 
 }  // namespace

@@ -39,6 +39,7 @@ nlohmann::ordered_json fixed_limits() {
           {"objects", kMaxObjects},
           {"lights", kMaxLights},
           {"textures", kMaxTextures},
+          {"texture_texels", kMaxTextureTexels},
           {"instanced_primitives", kMaxInstanced},
           {"motion_keys", kMaxKeys},
           {"mesh_vertices", MeshLimits{}.vertices},
