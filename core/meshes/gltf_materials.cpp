@@ -20,7 +20,9 @@ constexpr std::string_view kExtensions[] = {
     "KHR_texture_transform",  "KHR_materials_emissive_strength", "KHR_materials_unlit", "KHR_materials_ior",
     "KHR_materials_specular", "KHR_materials_transmission",      "KHR_materials_volume"};
 constexpr std::size_t kMaxNotes = 20;  // notes about images
-constexpr double kMaxEmission = 1e6;   // factor of emission; larger ones are reduced
+// Buffer views of images may overlap, and each image is a copy.
+constexpr std::size_t kMaxImageBytes = std::size_t{1} << 30;
+constexpr double kMaxEmission = 1e6;  // factor of emission; larger ones are reduced
 
 double number_or(const GltfValue& object, const char* key, double fallback, double least, double most) {
   const auto value = object.find(key);
@@ -186,13 +188,23 @@ class MaterialReader {
       std::string name = "image " + std::to_string(index);
       if (const auto uri = image.find("uri"); uri && !uri->text().starts_with("data:"))
         name = shortened(uri->text(), 80);
-      auto bytes = std::make_shared<const std::string>(file_.image_bytes(image));
-      found_.images.push_back({std::move(name), std::move(bytes)});
-      return images_[index] = static_cast<int>(found_.images.size()) - 1;
+      return images_[index] = add_image(std::move(name), file_.image_bytes(image));
     } catch (const InputError& error) {
       if (++bad_images_ <= kMaxNotes) note("an image is missing: " + error.problems().front().detail);
       return images_[index] = std::nullopt;
     }
+  }
+
+  // Returns the index of an image in found_.images. Images with the same bytes of the file are one.
+  int add_image(std::string name, std::string_view bytes) {
+    const std::pair place(bytes.data(), bytes.size());
+    if (const auto known = image_at_.find(place); known != image_at_.end()) return known->second;
+    if (bytes.size() > kMaxImageBytes - image_bytes_)
+      throw InputError("", "images have more than " + grouped(kMaxImageBytes) + " bytes (limit " +
+                               grouped(kMaxImageBytes) + ")");
+    image_bytes_ += bytes.size();
+    found_.images.push_back({std::move(name), std::make_shared<const std::string>(bytes)});
+    return image_at_[place] = static_cast<int>(found_.images.size()) - 1;
   }
 
   static ModelTexture::Wrap read_wrap(const GltfValue& sampler, const char* key) {
@@ -233,8 +245,10 @@ class MaterialReader {
 
   GltfFile& file_;
   GltfMaterials found_;
-  std::map<std::uint64_t, std::optional<int>> images_;  // by image of the file
-  std::optional<int> uv_set_;                           // set of the current material
+  std::map<std::uint64_t, std::optional<int>> images_;           // by image of the file
+  std::map<std::pair<const char*, std::size_t>, int> image_at_;  // by place in the file
+  std::size_t image_bytes_ = 0;
+  std::optional<int> uv_set_;  // set of the current material
   std::size_t bad_images_ = 0, mixed_sets_ = 0, specular_textures_ = 0, transmission_textures_ = 0;
 };
 

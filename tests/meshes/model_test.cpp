@@ -94,6 +94,20 @@ TEST(Model, ReadsTexturesAndImagesOfGltf) {
   EXPECT_EQ(material.metallic.texture->wrap, ModelTexture::Wrap::repeat);
 }
 
+// Views of a buffer may be shared, and each image of a model is a copy.
+TEST(Model, ReadsImagesWithTheSameBytesOnce) {
+  const MeshModel model = three_parts(
+      R"(,"materials":[{},{"pbrMetallicRoughness":{"baseColorTexture":{"index":1},)"
+      R"("metallicRoughnessTexture":{"index":0}},"emissiveTexture":{"index":2},"emissiveFactor":[1,1,1]}],)"
+      R"("textures":[{"source":0},{"source":1},{"source":2}],)"
+      R"("images":[{"uri":"a.png"},{"uri":"a.png"},{"uri":"b.png"}])",
+      [](const std::string& name) { return "bytes of " + name; });
+  ASSERT_EQ(model.images.size(), 2);
+  const ModelMaterial& material = model.materials[1];
+  EXPECT_EQ(material.base_color.texture->image, material.metallic.texture->image);
+  EXPECT_NE(material.base_color.texture->image, material.emission.texture->image);
+}
+
 TEST(Model, NotesMissingImages) {
   const MeshModel model = three_parts(kTextured);
   EXPECT_EQ(model.images.size(), 1);
