@@ -76,7 +76,8 @@ class HelpFormatter final : public CLI::Formatter {
     return names;
   }
   std::string make_option_opts(const CLI::Option* option) const override {
-    if (!option->get_option_text().empty()) return option->get_option_text();
+    const std::string& text = option->get_option_text();
+    if (!text.empty()) return (text.front() == '[' ? "" : " ") + text;  // --stats[=json], --format NAME
     if (option->get_positional() || option->get_type_size() == 0 || option->get_type_name().empty())
       return "";
     return " " + option->get_type_name();

@@ -8,6 +8,7 @@
 #include "core/load/scene_file.h"
 #include "core/model/asset_source.h"
 #include "core/params/json.h"
+#include "core/params/params.h"
 #include "server/api/view_scene.h"
 #include "server/commands/commands.h"
 #include "server/commands/output_file.h"
@@ -66,7 +67,14 @@ std::string help_of(const ViewParameter& parameter) {
   std::string help(parameter.help.substr(0, parameter.help.size() - 1));
   for (const std::string_view name : parameter.names)
     help += (name == parameter.names.front() ? ": " : ", ") + std::string(name);
-  return help + " [" + std::string(parameter.fallback) + "]";
+  return parameter.fallback.empty() ? help : help + " [" + std::string(parameter.fallback) + "]";
+}
+
+// Replaces the default in the help of a flag, which is that of scenes.
+void set_default(CLI::App& app, const char* flag, double fallback) {
+  CLI::Option* const option = app.get_option(flag);
+  const std::string help = option->get_description();
+  option->description(help.substr(0, help.rfind("default ")) + "default " + number_text(fallback) + ")");
 }
 
 View view_of(const ViewFlags& flags, const RenderRequest& request) {
@@ -113,6 +121,10 @@ Command add_view(CLI::App& root) {
         ->group(kCommonGroup);
   }
   add_model_flags(*app, flags->render.render);
+  const ImageSize size = view_size({});
+  set_default(*app, "--width", size.width);
+  set_default(*app, "--height", size.height);
+  set_default(*app, "--error", *with_view_budget({}).error);
   app->add_flag("--print-scene", flags->print_scene, "Print the scene as JSON instead of rendering it")
       ->group("Output");
   add_threads_flag(*app, flags->render.threads);

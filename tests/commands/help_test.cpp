@@ -122,6 +122,15 @@ TEST(Help, ShowsRangesAndDefaults) {
   EXPECT_NE(serve.find("default 8080)"), std::string::npos) << serve;
 }
 
+// A view has other defaults than a scene. Options without a default show none.
+TEST(Help, ShowsTheDefaultsOfViews) {
+  const std::string view = run_program("help view").text;
+  for (const char* note :
+       {"Image width in pixels (1-4096, default 512)", "default 0.02)", "  --format NAME "})
+    EXPECT_NE(view.find(note), std::string::npos) << note << "\n" << view;
+  for (const char* wrong : {"default 600", "[]"}) EXPECT_EQ(view.find(wrong), std::string::npos) << wrong;
+}
+
 TEST(Help, RejectsUnknownTopics) {
   const HelpRun wrong = run_program("help rendr");
   EXPECT_EQ(wrong.status, 2);
