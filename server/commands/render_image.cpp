@@ -105,7 +105,7 @@ void add_output_flags(CLI::App& app, RenderOptions& options) {
       ->group(kCommonGroup);
   app.add_option("--format", options.format, "Format: png, jpeg or exr; default: by the name, png for -")
       ->check(CLI::IsMember({"png", "jpeg", "exr"}))
-      ->option_text(" NAME")
+      ->option_text("NAME")
       ->group("Output");
   app.add_option("--certificate", options.certificate,
                  "Write the error bound as JSON, with a plan that renders the same image")
