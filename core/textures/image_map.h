@@ -26,8 +26,9 @@ class ImageLevels {
   explicit ImageLevels(const TexelsPtr& image);
 
   const std::vector<Level>& levels() const { return levels_; }
-  std::size_t texels() const { return levels_.front().rgb->size() / 3; }  // of level 0
-  const TextureBounds& bounds() const { return bounds_; }                 // of level 0
+  // Return the number of texels and the bounds of level 0.
+  std::size_t texels() const { return levels_.front().rgb->size() / 3; }
+  const TextureBounds& bounds() const { return bounds_; }
 
  private:
   std::vector<Level> levels_;
