@@ -261,6 +261,7 @@ class SceneReader {
   }
 
   void read_material(const std::string& name, Params& p) {
+    checkpoint();
     const auto type = p.pick("type", "Material type.", choices_of(material_types()));
     names_.add(name);
     if (!type) return places_.push_back({0, 0, name, {}, {}});

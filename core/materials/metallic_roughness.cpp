@@ -5,9 +5,19 @@
 namespace orrery {
 template <>
 void MetallicRoughnessInputs<double>::tabulate(double of_roughness) {
+  // Takes 1 ms. Thousands of materials of a model often have the same roughness.
+  struct Table {
+    double alpha = -1;
+    GgxAlbedo<double> albedo = {};
+    FacetAlbedo<double> grazing = {};
+  };
+  thread_local Table last;
   alpha = std::max(kMinAlpha, of_roughness * of_roughness);
-  albedo = ggx_albedo(alpha);
-  grazing = mirrored_albedo(alpha, [](double cosine) { return fresnel_schlick(0.0, cosine); });
+  if (alpha != last.alpha)
+    last = {alpha, ggx_albedo(alpha),
+            mirrored_albedo(alpha, [](double cosine) { return fresnel_schlick(0.0, cosine); })};
+  albedo = last.albedo;
+  grazing = last.grazing;
 }
 
 template <>
