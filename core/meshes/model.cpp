@@ -60,10 +60,10 @@ std::vector<int> materials_in_use(const TriangleMesh& mesh) {
 TriangleMesh part_of(const TriangleMesh& mesh, int material) {
   TriangleMesh part;
   std::vector<MeshPart> taken;
-  const std::vector<MeshPart> parts = mesh.parts.empty() ? std::vector{only_part(mesh)} : mesh.parts;
+  const std::vector<MeshPart> only{only_part(mesh)}, &parts = mesh.parts.empty() ? only : mesh.parts;
   for (std::size_t i = 0; i < parts.size(); ++i) {
+    checkpoint(i);
     if (parts[i].material != material) continue;
-    checkpoint();
     taken.push_back(parts[i]);
     const auto at = [&](std::size_t k) {
       return mesh.triangles.begin() +

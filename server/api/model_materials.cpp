@@ -2,9 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <set>
 
+#include "core/base/error.h"
 #include "core/base/shorten.h"
+#include "core/base/task_scope.h"
+#include "core/model/model_images.h"
+#include "core/plan/limits.h"
 
 namespace orrery {
 namespace {
@@ -26,12 +31,33 @@ Json numbers(const Vec3d& v) { return {v.x, v.y, v.z}; }
 class ModelWriter {
  public:
   ModelWriter(Json& scene, const MeshModel& model, const ModelReference& reference, double crease_degrees)
-      : scene_(scene), model_(model), reference_(reference), crease_degrees_(crease_degrees) {}
+      : scene_(scene),
+        model_(model),
+        materials_(model.materials),
+        reference_(reference),
+        crease_degrees_(crease_degrees) {
+    scene_["materials"] = Json::object();
+    for (const MeshPart& part : model.mesh.parts) {
+      MeshPart& all = parts_.emplace(part.material, part).first->second;
+      all.has_normals = all.has_normals && part.has_normals;
+      all.has_uvs = all.has_uvs && part.has_uvs;
+      all.has_colors = all.has_colors && part.has_colors;
+    }
+    if (parts_.empty()) parts_.emplace(-1, only_part(model.mesh));
+    for (ModelMaterial& material : materials_) {
+      drop_unknown_image(material.base_color.texture);
+      drop_unknown_image(material.metallic.texture);
+      drop_unknown_image(material.roughness.texture);
+      drop_unknown_image(material.emission.texture);
+      if (material.normal) drop_unknown_image(material.normal->texture);
+    }
+  }
 
   void write(const Json& plain) {
     const std::vector<int> materials = materials_in_use(model_.mesh);
     scene_["objects"] = Json::array();
     for (const int material : materials) {
+      checkpoint();
       Json object{{"type", "mesh"}, {reference_.key, reference_.name}};
       if (materials.size() > 1 || material >= 0) object["part"] = material;
       object["material"] = material < 0 ? add_plain_material(plain) : add_material(material);
@@ -41,13 +67,12 @@ class ModelWriter {
   }
 
  private:
-  // Returns whether all triangles with a material have an attribute.
-  bool has(int material, bool MeshPart::*attribute) const {
-    const std::vector<MeshPart>& parts = model_.mesh.parts;
-    if (parts.empty()) return only_part(model_.mesh).*attribute;
-    return std::all_of(parts.begin(), parts.end(),
-                       [&](const MeshPart& part) { return part.material != material || part.*attribute; });
+  void drop_unknown_image(std::optional<ModelTexture>& texture) const {
+    if (texture && !is_shown(model_.images[static_cast<std::size_t>(texture->image)])) texture.reset();
   }
+
+  // Returns whether all triangles with a material have an attribute.
+  bool has(int material, bool MeshPart::*attribute) const { return parts_.at(material).*attribute; }
 
   // Adds the material of triangles without a material. Vertex colours replace its reflectance.
   std::string add_plain_material(Json plain) {
@@ -60,13 +85,15 @@ class ModelWriter {
     constexpr std::size_t kMaxLength = 100;
     const std::string start = wanted.empty() ? "material" : shortened(wanted, kMaxLength);
     std::string name = start;
-    for (int k = 2; !names_.insert(name).second; ++k) name = start + " " + std::to_string(k);
-    scene_["materials"][name] = std::move(json);
+    for (int& k = used_[start]; !names_.insert(name).second;) name = start + " " + std::to_string(++k + 1);
+    // The name is new. operator[] would search all names for it.
+    Json::object_t::Container& members = scene_["materials"].get_ref<Json::object_t&>();
+    members.emplace_back(name, std::move(json));
     return name;
   }
 
   std::string add_material(int index) {
-    const ModelMaterial& from = model_.materials[static_cast<std::size_t>(index)];
+    const ModelMaterial& from = materials_[static_cast<std::size_t>(index)];
     const bool colored = has(index, &MeshPart::has_colors);
     Json json{{"type", "metallic-roughness"}};
     if (from.transmission > 0 && !from.unlit) {
@@ -152,18 +179,29 @@ class ModelWriter {
     for (int k = 2; textures.contains(name) && textures[name] != json; ++k)
       name = start + " " + std::to_string(k);
     textures[name] = std::move(json);
+    require_few(textures);
     return name;
   }
   std::string vertex_colors() {
     scene_["textures"]["vertex colours"] = {{"type", "uniform"}, {"vertex_colors", true}};
+    require_few(scene_["textures"]);
     return "vertex colours";
+  }
+
+  static void require_few(const Json& textures) {
+    if (textures.size() > kMaxTextures)
+      throw InputError("", "materials of the model must use at most " + std::to_string(kMaxTextures) +
+                               " textures: images in different encodings and placements (limit textures)");
   }
 
   Json& scene_;
   const MeshModel& model_;
+  std::vector<ModelMaterial> materials_;  // with images of known formats only
   const ModelReference& reference_;
   const double crease_degrees_;
+  std::map<int, MeshPart> parts_;          // attributes that all triangles with a material have
   std::set<std::string> names_{"ground"};  // names of materials, and of the plane below the model
+  std::map<std::string, int> used_;        // number of names that were tried, by their start
 };
 
 }  // namespace

@@ -16,7 +16,8 @@ struct ModelReference {
 
 // Adds one object per material of the model to a scene, with the materials and textures that they use. A
 // model without materials receives the material `plain`. Meshes without normals are smooth across edges of
-// less than `crease_degrees`.
+// less than `crease_degrees`. Images that is_shown() rejects are left out. Throws InputError (pointer "") if
+// the materials use more than kMaxTextures textures.
 void add_model(nlohmann::ordered_json& scene, const MeshModel& model, const ModelReference& reference,
                const nlohmann::ordered_json& plain, double crease_degrees);
 

@@ -6,6 +6,7 @@
 #include "core/base/hash.h"
 #include "core/base/shorten.h"
 #include "core/meshes/zip_file.h"
+#include "core/model/model_images.h"
 #include "server/base/errors.h"
 
 namespace orrery {
@@ -45,10 +46,9 @@ decltype(AssetStore::Asset::content) content_of(const std::string& bytes, std::s
     return AssetStore::Asset::Picture{picture_format(bytes), width, height, std::move(texels)};
   }
   require_mesh_format(bytes);
-  MeshModel model = read_model(bytes);
-  TriangleMesh& mesh = model.mesh;
-  return AssetStore::Asset::Mesh{model.format, mesh.positions.size(), mesh.triangles.size(),
-                                 std::move(mesh.notes)};
+  const MeshModel model = read_model(bytes);
+  const TriangleMesh& mesh = model.mesh;
+  return AssetStore::Asset::Mesh{model.format, mesh.positions.size(), mesh.triangles.size(), notes_of(model)};
 }
 
 }  // namespace

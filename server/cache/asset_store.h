@@ -18,7 +18,7 @@ class AssetStore final : public AssetSource {
     struct Mesh {
       MeshFormat format;
       std::size_t vertices, triangles;
-      std::vector<std::string> notes;  // see TriangleMesh::notes
+      std::vector<std::string> notes;  // see notes_of()
     };
     struct Picture {
       PictureFormat format;

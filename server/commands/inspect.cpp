@@ -5,6 +5,7 @@
 #include "core/base/shorten.h"
 #include "core/load/asset_files.h"
 #include "core/meshes/inspection.h"
+#include "core/model/model_images.h"
 #include "core/params/params.h"
 #include "server/commands/commands.h"
 #include "server/commands/help_layout.h"
@@ -56,7 +57,7 @@ nlohmann::ordered_json inspection_json(const ModelFile& model, const MeshInspect
           {"images", model.model->images.size()},
           {"cameras", model.model->cameras.size()},
           {"lights", model.model->lights.size()},
-          {"notes", model.model->mesh.notes}};
+          {"notes", notes_of(*model.model)}};
 }
 
 std::string row(const char* name, const std::string& text) {
@@ -87,7 +88,7 @@ std::string inspection_text(const ModelFile& model, const MeshInspection& found)
   text += row("box", text_of(found.bounds.lo) + " to " + text_of(found.bounds.hi));
   text += row("watertight", found.watertight ? "yes, volume " + number_text(found.volume) : "no");
   text += row("area", number_text(found.area));
-  for (const std::string& note : mesh.notes) text += row("note", note);
+  for (const std::string& note : notes_of(*model.model)) text += row("note", note);
   return text;
 }
 

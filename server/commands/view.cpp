@@ -7,6 +7,7 @@
 #include "core/load/load.h"
 #include "core/load/scene_file.h"
 #include "core/model/asset_source.h"
+#include "core/model/model_images.h"
 #include "core/params/json.h"
 #include "core/params/params.h"
 #include "server/api/view_scene.h"
@@ -82,7 +83,7 @@ View view_of(const ViewFlags& flags, const RenderRequest& request) {
   const std::string& path = flags.render.render.scene;
   ModelFile file = read_model_file(path, options.pose);
   View view{OneModel(file.model), {}};
-  for (const std::string& note : file.model->mesh.notes)
+  for (const std::string& note : notes_of(*file.model))
     std::cerr << "orrery: warning: " << path << ": " << note << "\n";
   const std::string name = path == "-" ? "model" : std::filesystem::path(path).filename().string();
   const auto [width, height] = view_size(request);

@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/image/encode/files.h"
 #include "core/load/load.h"
+#include "core/model/model_images.h"
 #include "core/params/json.h"
 #include "tests/meshes/writers.h"
 #include "tests/support/pictures.h"
@@ -169,6 +171,71 @@ TEST(ViewScene, MakesGlassOfTransmittingVolumes) {
   const auto pane = material_of(R"("KHR_materials_transmission":{"transmissionFactor":0.75})");
   EXPECT_EQ(pane["type"], "transparent");
   EXPECT_EQ(pane["kt"], 0.75);
+}
+
+// Returns a model of `count` triangles, each with a material of its own, without names.
+MeshModel model_of_materials(int count) {
+  MeshModel model;
+  for (int i = 0; i < count; ++i) {
+    const auto first = static_cast<std::uint32_t>(3 * i);
+    for (const Vec3d& corner : {Vec3d(i, 0, 0), Vec3d(i + 1, 0, 0), Vec3d(i, 1, 0)})
+      model.mesh.positions.push_back(corner);
+    model.mesh.triangles.push_back({first, first + 1, first + 2});
+    model.mesh.parts.push_back({static_cast<std::uint32_t>(i), i, false, true, false});
+  }
+  model.mesh.uvs.resize(model.mesh.positions.size());
+  model.materials.resize(static_cast<std::size_t>(count));
+  return model;
+}
+
+// The time is proportional to the number: the square of 40,000 would take minutes.
+TEST(ViewScene, NamesManyMaterials) {
+  constexpr int kCount = 40'000;
+  const auto start = std::chrono::steady_clock::now();
+  const auto scene = view_scene(model_of_materials(kCount), {"file", "model", "Model"}, {}, 64, 64);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+  ASSERT_EQ(scene["materials"].size(), kCount);
+  EXPECT_EQ(scene["objects"][0]["material"], "material");
+  EXPECT_EQ(scene["objects"][1]["material"], "material 2");
+  EXPECT_EQ(scene["objects"][kCount - 1]["material"], "material 40000");
+}
+
+TEST(ViewScene, RejectsModelsOfTooManyTextures) {
+  MeshModel model = model_of_materials(257);
+  model.images = {{"card", std::make_shared<const std::string>(Card(2).png())}};
+  for (std::size_t i = 0; i < model.materials.size(); ++i) {
+    ModelTexture texture;
+    texture.shift = {static_cast<double>(i), 0};
+    model.materials[i].base_color.texture = texture;
+  }
+  const auto view = [&] { return view_scene(model, {"file", "model", "Model"}, {}, 64, 64); };
+  try {
+    view();
+    FAIL() << "257 textures were accepted";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("at most 256 textures"), std::string::npos) << error.what();
+  }
+  model.materials[256] = model.materials[0];
+  EXPECT_EQ(view()["textures"].size(), 256);
+}
+
+// Viewers show the factors of a material whose image has another format, such as KTX or BMP.
+TEST(ViewScene, LeavesOutImagesOfUnknownFormats) {
+  MeshModel model = model_of_materials(1);
+  model.images = {{"card.png", std::make_shared<const std::string>(Card(2).png())},
+                  {"card.bmp", std::make_shared<const std::string>("BM, not decoded")}};
+  ModelMaterial& material = model.materials[0];
+  material.base_color = {Vec3d(0.25), ModelTexture{.image = 1}};
+  material.emission = {Vec3d(1), ModelTexture{.image = 0}};
+  material.normal = {1, ModelTexture{.image = 1}};
+  const auto scene = view_scene(model, {"file", "model", "Model"}, {}, 64, 64);
+  const auto& json = scene["materials"]["material"];
+  EXPECT_EQ(json["base_color"], (nlohmann::ordered_json{0.25, 0.25, 0.25}));
+  EXPECT_TRUE(json["emission"].contains("texture"));
+  EXPECT_FALSE(json.contains("normal_map"));
+  EXPECT_EQ(notes_of(model),
+            (std::vector<std::string>{
+                "image \"card.bmp\" is not shown: it must be an EXR, Radiance HDR, PNG, JPEG or WebP file"}));
 }
 
 }  // namespace
