@@ -118,9 +118,10 @@ void announce(const Service& service, const Settings& settings, const Log& log) 
 }
 
 // `read`: returns the settings at the time of the call.
-int run_service(const Settings& settings, const Log& log, const std::function<Settings()>& read) {
-  // SignalWatch blocks the signals before the service starts threads. The callbacks do nothing until the
-  // service exists.
+int run_service(const Settings& settings, LogForm form, LogLevel level,
+                const std::function<Settings()>& read) {
+  // SignalWatch blocks the signals before the log and the service start threads. The callbacks do nothing
+  // until the service exists.
   std::mutex mutex;
   Service* running = nullptr;  // guarded by mutex
   const auto tell = [&](const auto& what) {
@@ -129,6 +130,7 @@ int run_service(const Settings& settings, const Log& log, const std::function<Se
   };
   const SignalWatch signals([&] { tell([](Service& service) { service.stop(); }); },
                             [&] { tell([&](Service& service) { service.reload(read); }); });
+  const Log log(form, level);
   Service service(settings, log);
   {
     const std::lock_guard lock(mutex);
@@ -164,9 +166,9 @@ int serve(const CLI::App& app, const ServeOptions& options) {
   if (options.check_config && !settings.tokens_file.empty())
     std::cout << settings.tokens_file << ": " << tokens << " tokens\n";
   if (options.print_config || options.check_config) return kDone;
-  const Log log(options.log == "json" ? LogForm::json : LogForm::text,
-                options.quiet ? LogLevel::warning : LogLevel::info);
-  return run_service(settings, log, [&] {
+  const LogForm form = options.log == "json" ? LogForm::json : LogForm::text;
+  const LogLevel level = options.quiet ? LogLevel::warning : LogLevel::info;
+  return run_service(settings, form, level, [&] {
     // A pipe cannot be read again, and reading could block.
     if (!options.config.empty() && !std::filesystem::is_regular_file(options.config)) return settings;
     std::vector<Problem> found;

@@ -224,6 +224,15 @@ TEST(Shutdown, ExitsAfterDrainDelay) {
   EXPECT_EQ(daemon.wait(), 0);
 }
 
+// All threads block the signal from the start, those of the log included.
+TEST(Shutdown, EndsOrderlyRightAfterStart) {
+  for (int i = 0; i < 40; ++i) {
+    Daemon daemon({"--drain-delay-seconds", "0"});
+    daemon.signal(SIGTERM);
+    ASSERT_EQ(daemon.wait(), 0) << i;
+  }
+}
+
 TEST(Shutdown, FinishesRunningRequestsAndRejectsNewOnes) {
   Daemon daemon;
   const std::string scene = post(daemon, small_scene());
