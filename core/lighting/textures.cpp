@@ -89,6 +89,8 @@ TextureStage<T>::TextureStage(const Scene& scene, const Exposure& exposure) : ex
                           texture.filtered,
                           texture.vertex_colors,
                           false,
+                          false,
+                          false,
                           static_cast<T>(texture.texture->detail()),
                           {},
                           std::vector<char>(materials, 0)});
@@ -97,6 +99,8 @@ TextureStage<T>::TextureStage(const Scene& scene, const Exposure& exposure) : ex
     Entry& entry = entries_[static_cast<std::size_t>(number)];
     const auto material = static_cast<std::size_t>(use.material);
     entry.used_by[material] = 1;
+    entry.binds = entry.binds || !tilts(use);
+    entry.turns = entry.turns || use.slot == kNormalSlot;
     entry.tilts = entry.tilts || tilts(use);
     auto pass = std::find_if(entry.passes.begin(), entry.passes.end(),
                              [&](const Pass& p) { return p.slot == use.slot; });
@@ -126,13 +130,15 @@ void TextureStage<T>::apply(const Geometry<T>& geometry, const PathBatch<T>& pat
   std::unique_ptr<Scratch> scratch;
   const auto evaluate = [&](bool tilting) {
     for (const Entry& entry : entries_) {
-      if (tilting && !entry.tilts) continue;
+      if (!(tilting ? entry.tilts : entry.binds)) continue;
       Batch batch{geometry, paths, hits, surface, groups_of(entry, surface, met)};
       if (batch.groups.empty()) continue;
       if (!scratch) scratch.reset(new Scratch);
       find_coordinates(entry, batch, *scratch);
-      entry.kernel->evaluate(scratch->points, batch.groups, scratch->value);
-      if (entry.colored) multiply_colors(batch, scratch->value);
+      if (!tilting || entry.turns) {
+        entry.kernel->evaluate(scratch->points, batch.groups, scratch->value);
+        if (entry.colored) multiply_colors(batch, scratch->value);
+      }
       for (const Pass& pass : entry.passes) {
         if (tilting && pass.slot == kNormalSlot) turn_normals(pass, batch, *scratch);
         if (!tilting && (pass.slot >= 0 || pass.slot == kEmissionSlot)) bind(pass, batch, scratch->value);

@@ -45,7 +45,8 @@ class TextureStage {
   struct Entry {
     TextureKernelPtr<T> kernel;
     TextureMapping mapping;
-    bool filtered, colored, tilts = false;
+    bool filtered, colored;
+    bool binds = false, turns = false, tilts = false;  // sets values; has a normal map; has one or a bump map
     T detail;
     std::vector<Pass> passes;
     std::vector<char> used_by;  // by material

@@ -253,11 +253,9 @@ class SceneReader {
     if (!placed.texture) return;
     TextureBounds& bounds = texture_names_.bounds.back() = placed.texture->bounds();
     if (!placed.vertex_colors) return;  // colours are from 0 to 1
-    const auto with_0 = [](const Vec3d& v, auto of) {
-      return Vec3d(of(v.x, 0.0), of(v.y, 0.0), of(v.z, 0.0));
-    };
-    bounds.least = with_0(bounds.least, [](double a, double b) { return std::min(a, b); });
-    bounds.most = with_0(bounds.most, [](double a, double b) { return std::max(a, b); });
+    const Vec3d& least = bounds.least;
+    bounds = {{std::min(least.x, 0.0), std::min(least.y, 0.0), std::min(least.z, 0.0)},
+              largest(bounds.most, Vec3d(0))};
   }
 
   void read_material(const std::string& name, Params& p) {

@@ -114,20 +114,12 @@ std::string morphed(const std::string& weights_of_mesh, const std::string& node)
                   R"("output":7}],"channels":[{"sampler":0,"target":{"node":0,"path":"weights"}}]}])");
 }
 // Adds accessor 8, which is sparse.
-std::string with_sparse(std::string glb) {
+std::string with_sparse(const std::string& glb) {
   const std::string last = R"({"bufferView":7,"componentType":5126,"count":6,"type":"SCALAR"})";
   const std::string added = last +
                             R"(,{"componentType":5126,"count":3,"type":"VEC3","sparse":{"count":1,"indices":)"
                             R"({"bufferView":4,"componentType":5123},"values":{"bufferView":5}}})";
-  std::string json = glb.substr(20, glb.find("BIN") - 24);
-  const std::string binary = glb.substr(glb.find("BIN") - 4);
-  json.replace(json.find(last), last.size(), added);
-  json.resize((json.size() + 3) / 4 * 4, ' ');
-  std::string out = "glTF";
-  append(out, std::uint32_t{2});
-  append(out, static_cast<std::uint32_t>(20 + json.size() + binary.size()));
-  append(out, static_cast<std::uint32_t>(json.size()));
-  return out + "JSON" + json + binary;
+  return replaced(glb, last, added);
 }
 
 TEST(GltfPose, AppliesMorphTargets) {

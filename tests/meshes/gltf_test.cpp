@@ -26,18 +26,6 @@ TriangleMesh placed(const std::string& nodes) {
 std::string one_mesh_of(const std::string& positions) {
   return R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":)" + positions + "}}]}]";
 }
-// Replaces a part of a .glb file by a longer one, and corrects the lengths in its header.
-std::string replaced(const std::string& glb, const std::string& part, const std::string& by) {
-  std::string json = glb.substr(20, glb.find("BIN") - 24);
-  const std::string binary = glb.substr(glb.find("BIN") - 4);
-  json.replace(json.find(part), part.size(), by);
-  json.resize((json.size() + 3) / 4 * 4, ' ');
-  std::string out = "glTF";
-  append(out, std::uint32_t{2});
-  append(out, static_cast<std::uint32_t>(20 + json.size() + binary.size()));
-  append(out, static_cast<std::uint32_t>(json.size()));
-  return out + "JSON" + json + binary;
-}
 void expect_near(const Vec3d& a, const Vec3d& b, double bound = 1e-15) {
   EXPECT_LE(length(a - b), bound) << a.x << ' ' << a.y << ' ' << a.z;
 }

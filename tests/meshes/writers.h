@@ -201,6 +201,19 @@ class Gltf {
   int count_ = 0;
 };
 
+// Replaces a part of a .glb file by a longer one, and corrects the lengths in its header.
+inline std::string replaced(const std::string& glb, const std::string& part, const std::string& by) {
+  std::string json = glb.substr(20, glb.find("BIN") - 24);
+  const std::string binary = glb.substr(glb.find("BIN") - 4);
+  json.replace(json.find(part), part.size(), by);
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  std::string out = "glTF";
+  append(out, std::uint32_t{2});
+  append(out, static_cast<std::uint32_t>(20 + json.size() + binary.size()));
+  append(out, static_cast<std::uint32_t>(json.size()));
+  return out + "JSON" + json + binary;
+}
+
 // Returns a builder with the mesh as accessors 0 (positions) and 1 (indices), which kOneMesh refers to.
 inline Gltf gltf_of(const TriangleMesh& mesh) {
   Gltf gltf;
