@@ -15,17 +15,6 @@ bool follows_instances(const Scene& scene, const PlacedTexture& texture) {
 
 bool tilts(const TextureUse& use) { return use.slot == kBumpSlot || use.slot == kNormalSlot; }
 
-Vec3d channel_weights(TextureChannel channel) {
-  switch (channel) {
-    case TextureChannel::rgb: return Vec3d(0);
-    case TextureChannel::luminance: return {0.2126, 0.7152, 0.0722};
-    case TextureChannel::red: return {1, 0, 0};
-    case TextureChannel::green: return {0, 1, 0};
-    case TextureChannel::blue: return {0, 0, 1};
-  }
-  return Vec3d(0);
-}
-
 // Returns the difference of the smaller magnitude. At a jump, such as the seam of a sphere, only one of both
 // differences includes the jump.
 template <class N>

@@ -10,18 +10,9 @@ constexpr std::array<std::string_view, 5> kChannels{"rgb", "luminance", "red", "
 
 // Returns the bounds of a channel of a texture, as a grey colour unless the channel is rgb.
 TextureBounds bounds_of_channel(const TextureBounds& all, TextureChannel channel) {
-  const auto grey = [&](auto value) {
-    return TextureBounds{Vec3d(value(all.least)), Vec3d(value(all.most))};
-  };
-  switch (channel) {
-    case TextureChannel::rgb: return all;
-    case TextureChannel::luminance:
-      return grey([](const Vec3d& v) { return dot(v, Vec3d(0.2126, 0.7152, 0.0722)); });
-    case TextureChannel::red: return grey([](const Vec3d& v) { return v.x; });
-    case TextureChannel::green: return grey([](const Vec3d& v) { return v.y; });
-    case TextureChannel::blue: return grey([](const Vec3d& v) { return v.z; });
-  }
-  return all;
+  if (channel == TextureChannel::rgb) return all;
+  const Vec3d weights = channel_weights(channel);
+  return {Vec3d(dot(all.least, weights)), Vec3d(dot(all.most, weights))};
 }
 
 std::string range_of(const Vec3d& least, const Vec3d& most) {

@@ -62,8 +62,7 @@ class Texture {
 //   cylindrical  (turns of q about its y axis, q.y, 0)
 //   solid        q
 // The first two coordinates of uv, spherical and cylindrical are then multiplied by `repeat`, turned
-// anticlockwise by an angle with this cosine and sine, and increased by
-// `shift`.
+// anticlockwise by an angle with this cosine and sine, and increased by `shift`.
 struct TextureMapping {
   enum class Kind { uv, planar, spherical, cylindrical, solid } kind = Kind::uv;
   bool in_world = false;  // p is in world coordinates, otherwise in the coordinates of the instance's model
@@ -84,6 +83,18 @@ struct PlacedTexture {
 
 // Value taken from a texture: its colour, its luminance (ITU-R BT.709) or one channel.
 enum class TextureChannel { rgb, luminance, red, green, blue };
+
+// Returns the vector whose dot product with a colour is the value of a channel; 0 for rgb.
+inline Vec3d channel_weights(TextureChannel channel) {
+  switch (channel) {
+    case TextureChannel::rgb: return Vec3d(0);
+    case TextureChannel::luminance: return {0.2126, 0.7152, 0.0722};
+    case TextureChannel::red: return {1, 0, 0};
+    case TextureChannel::green: return {0, 1, 0};
+    case TextureChannel::blue: return {0, 0, 1};
+  }
+  return Vec3d(0);
+}
 
 // Slots of parameters that every material has: bump map, emission, normal map and opacity.
 inline constexpr int kBumpSlot = -1, kEmissionSlot = -2, kNormalSlot = -3, kOpacitySlot = -4;

@@ -55,15 +55,8 @@ class Opacities {
     scratch.points.at.put(0, Vec3<Lanes<T>>(Vec3<T>(at)));
     scratch.points.width.put(0, Vec3<Lanes<T>>(Lanes<T>(T(0))));
     use.kernel->evaluate(scratch.points, LaneGroups::single(0), scratch.value);
-    return use.use.scale.x * channel(use.use.channel, scratch.value[0]) + use.use.offset.x;
-  }
-  static double channel(TextureChannel channel, const Vec3<T>& value) {
-    switch (channel) {
-      case TextureChannel::red: return double{value.x};
-      case TextureChannel::green: return double{value.y};
-      case TextureChannel::blue: return double{value.z};
-      default: return dot(Vec3d(value), Vec3d(0.2126, 0.7152, 0.0722));
-    }
+    return use.use.scale.x * dot(Vec3d(scratch.value[0]), channel_weights(use.use.channel)) +
+           use.use.offset.x;
   }
 
   // Returns a number in [0, 1). Mixes bits as SplitMix64 (Steele, Lea, Flood, "Fast Splittable Pseudorandom
