@@ -85,83 +85,75 @@ class InstanceKernelOf : public ShapeKernel<T> {
 
   void surface(const RayBatch<T>& rays, const HitBatch<T>& hits, const LaneGroups& groups,
                SurfaceBatch<T>& out) const override {
-    const std::unique_ptr<ModelVisit<T>> visit(new ModelVisit<T>);
-    const std::unique_ptr<SurfaceBatch<T>> found(new SurfaceBatch<T>);
-    visit->rays.count = rays.count;
-    for_each_hit(hits, groups, [&](int i, const auto& mask, const Instance& placed, const auto& in_model) {
-      const auto pose = enter(placed, rays, i, hits.t.at(i), *visit);
-      visit->hits.primitive.put(i, in_model);
+    const auto take = [&](int i, const auto& mask, const auto& pose, const Instance& placed,
+                          LocalHits& local) {
       for (const auto& shapes : placed.model->shapes)
-        shapes->surface(visit->rays, visit->hits, LaneGroups::single(i), *found);
-      out.position.put(i, mask, pose.point(found->position.at(i)));
-      out.geometric.put(i, mask, normalize(pose.normal(found->geometric.at(i))));
-      out.normal.put(i, mask, normalize(pose.normal(found->normal.at(i))));
-      out.side.put(i, mask, found->side.at(i));
-      out.step.put(i, mask, N(found->step.at(i) * N(placed.step_scale) + N(placed.step_base)));
-    });
+        shapes->surface(local.rays, local.hits, LaneGroups::single(i), local.surface);
+      out.position.put(i, mask, pose.point(local.surface.position.at(i)));
+      out.geometric.put(i, mask, normalize(pose.normal(local.surface.geometric.at(i))));
+      out.normal.put(i, mask, normalize(pose.normal(local.surface.normal.at(i))));
+      out.side.put(i, mask, local.surface.side.at(i));
+      out.step.put(i, mask, N(local.surface.step.at(i) * N(placed.step_scale) + N(placed.step_base)));
+    };
+    for_each_hit(rays, hits, groups, take);
   }
 
   // The curved surface of a model transforms with the model. A normal of 0 marks lanes without one.
   void smooth(const RayBatch<T>& rays, const HitBatch<T>& hits, const LaneGroups& groups,
               SurfaceBatch<T>& out) const override {
-    const std::unique_ptr<ModelVisit<T>> visit(new ModelVisit<T>);
-    const std::unique_ptr<SurfaceBatch<T>> found(new SurfaceBatch<T>);
     const N zero(T(0));
-    visit->rays.count = rays.count;
-    for_each_hit(hits, groups, [&](int i, const auto& mask, const Instance& placed, const auto& in_model) {
-      const auto pose = enter(placed, rays, i, hits.t.at(i), *visit);
-      visit->hits.primitive.put(i, in_model);
-      found->smooth.put(i, Vec3<N>(zero));
+    const auto take = [&](int i, const auto& mask, const auto& pose, const Instance& placed,
+                          LocalHits& local) {
+      local.surface.smooth.put(i, Vec3<N>(zero));
       for (const auto& shapes : placed.model->shapes)
-        shapes->smooth(visit->rays, visit->hits, LaneGroups::single(i), *found);
-      const Vec3<N> normal = found->smooth.at(i);
+        shapes->smooth(local.rays, local.hits, LaneGroups::single(i), local.surface);
+      const Vec3<N> normal = local.surface.smooth.at(i);
       const auto curved = mask && max_component(abs(normal)) > zero;
       if (!any(curved)) return;
       out.smooth.put(i, curved, normalize(pose.normal(normal)));
-      out.lift.put(i, curved, pose.vector(found->lift.at(i)));
-    });
+      out.lift.put(i, curved, pose.vector(local.surface.lift.at(i)));
+    };
+    for_each_hit(rays, hits, groups, take);
   }
 
   // Colours of 1 mark lanes without vertex colours.
   void colors(const RayBatch<T>& rays, const HitBatch<T>& hits, const LaneGroups& groups,
               SurfaceBatch<T>& out) const override {
-    const std::unique_ptr<ModelVisit<T>> visit(new ModelVisit<T>);
-    const std::unique_ptr<SurfaceBatch<T>> found(new SurfaceBatch<T>);
-    visit->rays.count = rays.count;
-    for_each_hit(hits, groups, [&](int i, const auto& mask, const Instance& placed, const auto& in_model) {
-      enter(placed, rays, i, hits.t.at(i), *visit);
-      visit->hits.primitive.put(i, in_model);
-      found->color.put(i, Vec3<N>(N(T(1))));
+    const auto take = [&](int i, const auto& mask, const auto&, const Instance& placed, LocalHits& local) {
+      local.surface.color.put(i, Vec3<N>(N(T(1))));
       for (const auto& shapes : placed.model->shapes)
-        shapes->colors(visit->rays, visit->hits, LaneGroups::single(i), *found);
-      out.color.put(i, mask, found->color.at(i));
-    });
+        shapes->colors(local.rays, local.hits, LaneGroups::single(i), local.surface);
+      out.color.put(i, mask, local.surface.color.at(i));
+    };
+    for_each_hit(rays, hits, groups, take);
   }
 
   void parameters(const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits,
                   SurfaceBatch<T>& out) const override {
-    const std::unique_ptr<ModelVisit<T>> visit(new ModelVisit<T>);
-    const std::unique_ptr<SurfaceBatch<T>> found(new SurfaceBatch<T>);
-    visit->rays.count = rays.count;
-    for_each_hit(hits, groups, [&](int i, const auto& mask, const Instance& placed, const auto& in_model) {
-      const auto pose = enter(placed, rays, i, hits.t.at(i), *visit);
-      visit->hits.primitive.put(i, in_model);
+    const auto take = [&](int i, const auto& mask, const auto& pose, const Instance& placed,
+                          LocalHits& local) {
       for (const auto& shapes : placed.model->shapes) {
-        shapes->surface(visit->rays, visit->hits, LaneGroups::single(i), *found);
-        shapes->parameters(visit->rays, LaneGroups::single(i), visit->hits, *found);
+        shapes->surface(local.rays, local.hits, LaneGroups::single(i), local.surface);
+        shapes->parameters(local.rays, LaneGroups::single(i), local.hits, local.surface);
       }
-      hits.u.put(i, mask, visit->hits.u.at(i));
-      hits.v.put(i, mask, visit->hits.v.at(i));
-      out.u.put(i, mask, found->u.at(i));
-      out.v.put(i, mask, found->v.at(i));
-      out.tangent.put(i, mask, normalize(pose.vector(found->tangent.at(i))));
-    });
+      hits.u.put(i, mask, local.hits.u.at(i));
+      hits.v.put(i, mask, local.hits.v.at(i));
+      out.u.put(i, mask, local.surface.u.at(i));
+      out.v.put(i, mask, local.surface.v.at(i));
+      out.tangent.put(i, mask, normalize(pose.vector(local.surface.tangent.at(i))));
+    };
+    for_each_hit(rays, hits, groups, take);
   }
 
  protected:
   std::shared_ptr<const List> placed_;
 
  private:
+  // Hits in the coordinates of a model, and the surfaces there.
+  struct LocalHits : ModelVisit<T> {
+    SurfaceBatch<T> surface;
+  };
+
   // Stores the rays of register i in `visit`, in model coordinates. Returns the pose.
   static auto enter(const Instance& placed, const RayBatch<T>& rays, int i, const N& t,
                     ModelVisit<T>& visit) {
@@ -171,10 +163,14 @@ class InstanceKernelOf : public ShapeKernel<T> {
     return pose;
   }
 
-  // Calls visit(i, mask, instance, ids) for each register i of `groups` and each instance that a lane of the
-  // register hits. `mask` selects these lanes. `ids` are the numbers of the hit primitives within the model.
+  // Calls visit(i, mask, pose, instance, local) for each register i of `groups` and each instance that a lane
+  // of the register hits. `mask` selects these lanes. `local` holds their rays and hits in the coordinates of
+  // the model.
   template <class Visit>
-  void for_each_hit(const HitBatch<T>& hits, const LaneGroups& groups, const Visit& visit) const {
+  void for_each_hit(const RayBatch<T>& rays, const HitBatch<T>& hits, const LaneGroups& groups,
+                    const Visit& visit) const {
+    const std::unique_ptr<LocalHits> local(new LocalHits);
+    local->rays.count = rays.count;
     const auto owner = [this](IndexOf<T> id) {
       return std::upper_bound(placed_->begin(), placed_->end(), id,
                               [](IndexOf<T> number, const Instance& p) { return number < p.last; });
@@ -188,9 +184,11 @@ class InstanceKernelOf : public ShapeKernel<T> {
         const auto here = open && id >= IndexOf<T>(placed.first) && id < IndexOf<T>(placed.last);
         open = open && !here && id != one;
         if (!any(here)) continue;  // the lane hits a primitive of another kernel
-        IndexLanes<T> in_model(IndexOf<T>{kNoPrimitive});
-        stdx::where(here, in_model) = id - IndexOf<T>(placed.first);
-        visit(i, mask_cast<N>(here), placed, in_model);
+        IndexLanes<T> hit(IndexOf<T>{kNoPrimitive});
+        stdx::where(here, hit) = id - IndexOf<T>(placed.first);
+        const auto pose = enter(placed, rays, i, hits.t.at(i), *local);
+        local->hits.primitive.put(i, hit);
+        visit(i, mask_cast<N>(here), pose, placed, *local);
       }
     }
   }

@@ -155,6 +155,12 @@ void DecoderProcess::read_all(std::span<std::byte> bytes) {
   if (read_some(bytes) < bytes.size()) fail_ended();
 }
 
+void DecoderProcess::fail_with_text(std::uint64_t bytes) {
+  std::string text(std::min<std::uint64_t>(bytes, 500), ' ');
+  text.resize(read_some(std::as_writable_bytes(std::span(text))));
+  throw InputError("", std::move(text));
+}
+
 void DecoderProcess::fail_ended() {
   const int status = wait();
   if (WIFSIGNALED(status))

@@ -3,6 +3,7 @@
 #include <sys/types.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -28,6 +29,8 @@ class DecoderProcess {
   std::size_t read_some(std::span<std::byte> bytes);
   // Reads `bytes.size()` bytes. Throws InputError that reports the end of the process if there are fewer.
   void read_all(std::span<std::byte> bytes);
+  // Reads an error message of `bytes` bytes and throws its first 500 bytes as InputError (pointer "").
+  [[noreturn]] void fail_with_text(std::uint64_t bytes);
 
  private:
   int wait();

@@ -1,9 +1,6 @@
 #include "core/meshes/gltf_draco.h"
 
-#include <algorithm>
-
 #include "core/base/decoder_process.h"
-#include "core/base/error.h"
 #include "core/base/task_scope.h"
 #include "core/meshes/decoder/protocol.h"
 
@@ -32,11 +29,7 @@ DracoMesh decode_draco(std::string_view bytes, std::size_t points, std::size_t f
   DecoderProcess decoder("orrery-decode-mesh", std::move(arguments), std::span(&bytes, 1), "Draco mesh");
   DecodedMeshHeader header{};
   decoder.read_all(std::as_writable_bytes(std::span(&header, 1)));
-  if (header.text_bytes > 0) {
-    std::string text(std::min<std::uint64_t>(header.text_bytes, 500), ' ');
-    text.resize(decoder.read_some(std::as_writable_bytes(std::span(text))));
-    throw InputError("", std::move(text));
-  }
+  if (header.text_bytes > 0) decoder.fail_with_text(header.text_bytes);
   DracoMesh mesh{read_numbers(decoder, 3 * faces), {}};
   for (const DracoAttribute& attribute : attributes)
     mesh.attributes.push_back(read_numbers(decoder, points * attribute.components));

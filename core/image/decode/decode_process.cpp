@@ -53,11 +53,7 @@ Texels decode_in_process(const PictureFile& file) {
                          file.parts, "image");
   DecodedHeader header{};
   decoder.read_all(std::as_writable_bytes(std::span(&header, 1)));
-  if (header.text_bytes > 0) {
-    std::string text(std::min<std::size_t>(header.text_bytes, 500), ' ');
-    text.resize(decoder.read_some(std::as_writable_bytes(std::span(text))));
-    throw InputError("", std::move(text));
-  }
+  if (header.text_bytes > 0) decoder.fail_with_text(header.text_bytes);
   if (header.width != file.width || header.height != file.height)
     throw InputError("", "image is damaged: decoded size must equal the size in the header, " +
                              std::to_string(file.width) + " x " + std::to_string(file.height) + " (got " +
