@@ -59,7 +59,6 @@ void GlassInputs<double>::read_boundary(MaterialParams& p) {
       p.plain().fail("roughness", "cannot be textured if ior is from 0.933 to 1.071 (got " +
                                       number_text(ior) + "), because such glass is smooth");
   }
-  tabulate(roughness);
 }
 
 template <>

@@ -25,8 +25,8 @@
 // which is a record with the parameters, all that the type derives from parameters without textures, and
 //   void read(MaterialParams&);     of RoughInputs<double>, defined in the .cpp file
 //   Rough<N> record() const;        for scalars and lanes
-//   void tabulate(double roughness);   if members depend on `roughness` by quadrature: see
-//                                      roughness_table.h
+//   void tabulate(double roughness);   called after read(), if members depend on `roughness` by quadrature:
+//                                      see roughness_table.h
 // For bounds, the functions above are called for each combination of the smallest and the largest values of
 // the textured parameters. They must be monotonic in each of these parameters, or largest at an end.
 namespace orrery {
@@ -95,6 +95,7 @@ class MaterialSetOf final : public MaterialSet {
       Inputs inputs{};
       MaterialParams p(params, &textures, reinterpret_cast<double*>(&inputs));
       inputs.read(p);
+      tabulate(inputs);
       if (p.fields().size() > fields_.size()) fields_ = p.fields();
       inputs_.push_back(inputs);
       uses_.push_back(p.uses());
@@ -176,6 +177,18 @@ class MaterialSetOf final : public MaterialSet {
     using type = typename R<double>::template Inputs<double>;
   };
   using Inputs = typename InputsOf<Record>::type;
+
+  // Computes the members that depend on `roughness`, or copies them from the last material, because thousands
+  // of materials of a model often have the same roughness.
+  void tabulate(Inputs& inputs) const {
+    if constexpr (TabulatesRoughnessOnly<Inputs>)
+      if (!inputs_.empty() && inputs_.back().roughness == inputs.roughness) {
+        const double* const end = reinterpret_cast<const double*>(&inputs_.back() + 1);
+        std::copy(&inputs_.back().roughness + 1, end, &inputs.roughness + 1);
+        return;
+      }
+    if constexpr (Tabulated<Inputs>) inputs.tabulate(inputs.roughness);
+  }
 
   // Returns the record of a material, or the records with extreme values if the material is textured.
   std::span<const Record<double>> records_of(int index) const {

@@ -46,7 +46,6 @@ void MetalInputs<double>::read(MaterialParams& p) {
            {.min = 0, .max = 1}, 0.3);  // before n and k, which are not always read: see MaterialParams
   if (p.raise_texture(roughness, kMinTexturedRoughness)) roughness = kMinTexturedRoughness;
   read_indices(p, *this);
-  tabulate(roughness);
 }
 
 namespace {

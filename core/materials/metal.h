@@ -82,6 +82,7 @@ N multiple_scattering_reflectance(const N& mean_reflectance, const N& mean_albed
 // Parameters of a Metal material, and the albedo of its facets.
 template <class N>
 struct MetalInputs {
+  static constexpr bool kTabulatesRoughnessOnly = true;
   Vec3<N> n, k;
   N roughness;
   N alpha;

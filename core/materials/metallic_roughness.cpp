@@ -5,19 +5,9 @@
 namespace orrery {
 template <>
 void MetallicRoughnessInputs<double>::tabulate(double of_roughness) {
-  // Takes 1 ms. Thousands of materials of a model often have the same roughness.
-  struct Table {
-    double alpha = -1;
-    GgxAlbedo<double> albedo = {};
-    FacetAlbedo<double> grazing = {};
-  };
-  thread_local Table last;
   alpha = std::max(kMinAlpha, of_roughness * of_roughness);
-  if (alpha != last.alpha)
-    last = {alpha, ggx_albedo(alpha),
-            mirrored_albedo(alpha, [](double cosine) { return fresnel_schlick(0.0, cosine); })};
-  albedo = last.albedo;
-  grazing = last.grazing;
+  albedo = ggx_albedo(alpha);
+  grazing = mirrored_albedo(alpha, [](double cosine) { return fresnel_schlick(0.0, cosine); });
 }
 
 template <>
@@ -35,7 +25,6 @@ void MetallicRoughnessInputs<double>::read(MaterialParams& p) {
   if (p.raise_texture(roughness, kMinTexturedRoughness)) roughness = kMinTexturedRoughness;
   strict = p.plain().flag("strict",
                           "Use the glTF 2.0 formula unchanged, although it does not conserve energy.", false);
-  tabulate(roughness);
 }
 
 // Returns 1 if `strict` is 0. Otherwise returns the largest albedo for five view directions, mostly grazing

@@ -118,6 +118,7 @@ struct MetallicRoughness {
 // Parameters of a MetallicRoughness material, and the albedos of its facets.
 template <class N>
 struct MetallicRoughnessInputs {
+  static constexpr bool kTabulatesRoughnessOnly = true;
   Vec3<N> base_color, normal_reflectance;
   N metallic, strict, roughness;
   N alpha;

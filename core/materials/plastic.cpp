@@ -26,7 +26,6 @@ void PlasticInputs<double>::read(MaterialParams& p) {
            "Roughness of the coat from 0 (smooth) to 1; its square is the alpha of the GGX distribution.",
            {.min = 0, .max = 1}, 0.3);
   if (p.raise_texture(roughness, kMinTexturedRoughness)) roughness = kMinTexturedRoughness;
-  tabulate(roughness);
 }
 
 namespace {

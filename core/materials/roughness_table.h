@@ -20,6 +20,12 @@ concept Tabulated = requires(Inputs& inputs) {
   inputs.tabulate(inputs.roughness);
 };
 
+// Tabulated inputs whose members after `roughness` depend on no other member.
+template <class Inputs>
+concept TabulatesRoughnessOnly = Tabulated<Inputs> && requires {
+  requires Inputs::kTabulatesRoughnessOnly;
+};
+
 // Members of tabulated inputs after `roughness`, the first of which is alpha, for values of roughness at
 // equal distances. Albedos are smooth functions of alpha at fixed nodes of their series, so that the
 // coefficients are interpolated linearly in alpha, as ggx_albedo() does.
