@@ -8,6 +8,7 @@
 #include "core/base/shorten.h"
 #include "core/base/task_scope.h"
 #include "core/meshes/formats.h"
+#include "core/meshes/note_list.h"
 #include "core/meshes/text.h"
 
 // glTF 2.0 (Khronos, ISO/IEC 12113:2022): section 3.8 (texture data) and section 3.9 (materials). Extensions:
@@ -58,9 +59,9 @@ class MaterialReader {
       read_material(materials->item(i));
       found_.uv_sets.push_back(uv_set_.value_or(0));
     }
-    if (bad_images_ > kMaxNotes) note(grouped(bad_images_ - kMaxNotes) + " more images are missing");
+    missing_images_.move_to(found_.notes);
     const auto report = [&](std::size_t count, const char* what) {
-      if (count > 0) note(grouped(count) + what);
+      if (count > 0) found_.notes.push_back(grouped(count) + what);
     };
     report(transmission_textures_, " textures of KHR_materials_transmission are not modelled");
     report(specular_textures_, " textures of KHR_materials_specular are not modelled");
@@ -69,8 +70,6 @@ class MaterialReader {
   }
 
  private:
-  void note(std::string text) { found_.notes.push_back(std::move(text)); }
-
   void read_material(const GltfValue& json) {
     ModelMaterial& material = found_.materials.emplace_back();
     if (const auto name = json.find("name")) material.name = name->text();
@@ -190,7 +189,7 @@ class MaterialReader {
         name = shortened(uri->text(), 80);
       return images_[index] = add_image(std::move(name), file_.image_bytes(image));
     } catch (const InputError& error) {
-      if (++bad_images_ <= kMaxNotes) note("an image is missing: " + error.problems().front().detail);
+      missing_images_.add("an image is missing: " + error.problems().front().detail);
       return images_[index] = std::nullopt;
     }
   }
@@ -249,7 +248,8 @@ class MaterialReader {
   std::map<std::pair<const char*, std::size_t>, int> image_at_;  // by place in the file
   std::size_t image_bytes_ = 0;
   std::optional<int> uv_set_;  // set of the current material
-  std::size_t bad_images_ = 0, mixed_sets_ = 0, specular_textures_ = 0, transmission_textures_ = 0;
+  NoteList missing_images_{kMaxNotes, " more images are missing"};
+  std::size_t mixed_sets_ = 0, specular_textures_ = 0, transmission_textures_ = 0;
 };
 
 }  // namespace

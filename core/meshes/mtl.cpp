@@ -1,14 +1,15 @@
 #include "core/meshes/mtl.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <set>
 
+#include "core/base/number.h"
 #include "core/base/shorten.h"
 #include "core/base/task_scope.h"
 #include "core/meshes/formats.h"
+#include "core/meshes/note_list.h"
 #include "core/meshes/text.h"
 
 // Material libraries of Wavefront OBJ. Format: Wavefront, Material Library File (MTL) Format, 1995. The keys
@@ -42,24 +43,6 @@ std::string with_slashes(std::string_view name) {
   std::replace(path.begin(), path.end(), '\\', '/');
   return path;
 }
-
-// Notes of one kind, of which the first kMaxMtlNotes are kept.
-class NoteList {
- public:
-  explicit NoteList(std::string more) : more_(std::move(more)) {}
-  void add(std::string note) {
-    if (++count_ <= kMaxMtlNotes) notes_.push_back(std::move(note));
-  }
-  void move_to(std::vector<std::string>& notes) {
-    for (std::string& note : notes_) notes.push_back(std::move(note));
-    if (count_ > kMaxMtlNotes) notes.push_back(grouped(count_ - kMaxMtlNotes) + more_);
-  }
-
- private:
-  std::string more_;
-  std::size_t count_ = 0;
-  std::vector<std::string> notes_;
-};
 
 // Reads a library. Invalid lines are skipped, with a note.
 class LibraryReader {
@@ -168,11 +151,8 @@ class LibraryReader {
     std::array<double, 2> pair{fallback, fallback};
     for (std::size_t i = 0; i < 3; ++i) {
       TextReader ahead = text_;
-      const std::string_view word = ahead.word_of_line();
-      double number = 0;
-      const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-      if (i > 0 && (error != std::errc() || stop != word.data() + word.size())) break;
-      number = checked_scale(name, text_.parse_number(text_.word_of_line(), name));
+      if (i > 0 && !parse_number<double>(ahead.word_of_line())) break;
+      const double number = checked_scale(name, text_.parse_number(text_.word_of_line(), name));
       if (i < 2) pair[i] = number;
     }
     return pair;
@@ -207,7 +187,7 @@ class MtlReader {
       else
         undefined_.add("material " + excerpt(name, kNameCharacters) + " is not defined");
     }
-    if (lacks_library_) undefined_ = NoteList("");  // a consequence of the missing library
+    if (lacks_library_) undefined_ = {kMaxMtlNotes, ""};  // a consequence of the missing library
     for (NoteList* notes : {&missing_, &undefined_, &problems_}) notes->move_to(found_.notes);
     for (const std::string& key : unknown_)
       found_.notes.push_back("key " + key + " of materials is not modelled");
@@ -334,8 +314,9 @@ class MtlReader {
   std::map<std::string, std::optional<MtlMaterial>, std::less<>> wanted_;  // by name
   std::map<std::string, bool> read_names_;            // libraries: whether they could be read
   std::map<std::string, std::optional<int>> images_;  // by name in the file
-  NoteList missing_{" more files are missing"}, undefined_{" more materials are not defined"},
-      problems_{" more lines of material libraries are invalid"};
+  NoteList missing_{kMaxMtlNotes, " more files are missing"},
+      undefined_{kMaxMtlNotes, " more materials are not defined"},
+      problems_{kMaxMtlNotes, " more lines of material libraries are invalid"};
   std::set<std::string> unknown_;  // keys that are not modelled
   bool lacks_library_ = false;
 };

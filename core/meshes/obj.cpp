@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <set>
 
+#include "core/base/number.h"
 #include "core/meshes/formats.h"
 #include "core/meshes/index_table.h"
 #include "core/meshes/mesh_parts.h"
@@ -69,10 +69,10 @@ class ObjReader {
   std::optional<Vec3d> read_color() {
     std::array<double, 4> numbers;
     std::size_t count = 0;
-    for (std::string_view word = text_.word_of_line(); !word.empty() && count < numbers.size(); ++count) {
-      const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), numbers[count]);
-      if (error != std::errc() || stop != word.data() + word.size()) break;
-      word = text_.word_of_line();
+    for (; count < numbers.size(); ++count) {
+      const auto number = parse_number<double>(text_.word_of_line());
+      if (!number) break;
+      numbers[count] = *number;
     }
     if (count < 3) return std::nullopt;
     const Vec3d color(numbers[count - 3], numbers[count - 2], numbers[count - 1]);

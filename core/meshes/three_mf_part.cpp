@@ -1,7 +1,9 @@
 #include "core/meshes/three_mf_part.h"
 
 #include <algorithm>
+#include <charconv>
 
+#include "core/base/number.h"
 #include "core/meshes/formats.h"
 #include "core/meshes/index_table.h"
 #include "core/meshes/mesh_parts.h"
@@ -157,10 +159,10 @@ class PartReader {
     TextReader words(*text);
     std::array<double, 12> m;
     for (double& number : m) {
-      const std::string_view word = words.word();
-      const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-      if (error != std::errc() || stop != word.data() + word.size() || !std::isfinite(number))
+      const auto read = parse_number<double>(words.word());
+      if (!read || !std::isfinite(*read))
         file_.fail(element, "transform must be 12 finite numbers (got " + excerpt(*text, 120) + ")");
+      number = *read;
     }
     return {{m[0], m[1], m[2]}, {m[3], m[4], m[5]}, {m[6], m[7], m[8]}, {m[9], m[10], m[11]}};
   }

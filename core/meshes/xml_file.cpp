@@ -1,7 +1,8 @@
 #include "core/meshes/xml_file.h"
 
-#include <charconv>
+#include <cmath>
 
+#include "core/base/number.h"
 #include "core/meshes/formats.h"
 #include "core/meshes/text.h"
 
@@ -84,13 +85,6 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlanks) + 1 - first);
 }
 
-// Sets `number` to the whole text. Returns false if the text is no number of its type.
-template <class T>
-bool parse_whole(std::string_view text, T& number) {
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && stop == text.data() + text.size();
-}
-
 }  // namespace
 
 std::string_view local_name(const char* name) {
@@ -126,8 +120,8 @@ std::string_view XmlFile::needed_text(const pugi::xml_node& element, std::string
 std::optional<std::uint32_t> XmlFile::integer(const pugi::xml_node& element, std::string_view name) const {
   const auto value = text(element, name);
   if (!value) return std::nullopt;
-  std::uint32_t number = 0;
-  if (!parse_whole(trimmed(*value), number))
+  const auto number = parse_number<std::uint32_t>(trimmed(*value));
+  if (!number)
     fail(element,
          std::string(name) + " must be an integer from 0 to 4294967295 (got " + excerpt(*value) + ")");
   return number;
@@ -142,10 +136,10 @@ double XmlFile::needed_number(const pugi::xml_node& element, std::string_view na
   const std::string_view value = needed_text(element, name);
   std::string_view digits = trimmed(value);
   if (digits.starts_with('+')) digits.remove_prefix(1);
-  double number = 0;
-  if (!parse_whole(digits, number) || !std::isfinite(number))
+  const auto number = parse_number<double>(digits);
+  if (!number || !std::isfinite(*number))
     fail(element, std::string(name) + " must be a finite number (got " + excerpt(value) + ")");
-  return number;
+  return *number;
 }
 
 void XmlFile::fail(const pugi::xml_node& element, const std::string& detail) const {

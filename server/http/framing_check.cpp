@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 
+#include "core/base/number.h"
 #include "core/base/shorten.h"
 #include "server/http/authority.h"
 #include "server/http/field_list.h"
@@ -67,13 +67,12 @@ void check_transfer_coding(std::string_view coding, Head& head) {
 }
 
 void check_length(std::string_view value, Head& head) {
-  std::size_t length = 0;
-  const auto [end, problem] = std::from_chars(value.data(), value.data() + value.size(), length);
-  if (problem != std::errc() || end != value.data() + value.size())
+  const auto length = parse_number<std::size_t>(value);
+  if (!length)
     throw HttpError(
         400, "Content-Length must be a number of bytes (got " + std::string(value.substr(0, 40)) + ")");
   if (head.checked.content_length) throw HttpError(400, "duplicate Content-Length header");
-  head.checked.content_length = length;
+  head.checked.content_length = *length;
 }
 
 void check_host(std::string_view value, Head& head) {
