@@ -324,7 +324,7 @@ Json view_scene(const MeshModel& model, const ModelReference& reference, const V
       object["pose_time"] = options.pose->time;
       object["animation"] = options.pose->animation;
     }
-  add_ground(scene, options, axes, corners, framing.eye);
+  add_ground(scene, options, axes, corners, camera ? camera->eye : framing.eye);
   // In the open, sharing paths costs more than it gains.
   scene["render"] = {{"technique", "path"}, {"max_depth", 4}, {"path_reuse", 1}};
   return scene;

@@ -155,6 +155,19 @@ TEST(ViewScene, UsesCamerasAndLightsOfTheFile) {
   }
 }
 
+TEST(ViewScene, OmitsGroundAboveTheCameraOfTheFile) {
+  MeshModel model = card_model(Card(2), 1, R"("name":"m")");
+  ViewOptions options;
+  options.ground = ViewOptions::Ground::shadow;
+  options.camera = "0";
+  const auto objects_from = [&](double height) {
+    model.cameras = {{"0", {0, height, 4}, {0, 0, -1}, {0, 1, 0}, 30, 0}};
+    return view_scene(model, {"file", "model", "Model"}, options, 64, 64)["objects"].size();
+  };
+  EXPECT_EQ(objects_from(3), 2);
+  EXPECT_EQ(objects_from(-3), 1);
+}
+
 TEST(ViewScene, MakesGlassOfTransmittingVolumes) {
   const Card card(2);
   const auto material_of = [&](const std::string& extensions) {
