@@ -13,8 +13,6 @@ bool follows_instances(const Scene& scene, const PlacedTexture& texture) {
          !scene.instances.empty();
 }
 
-bool tilts(const TextureUse& use) { return use.slot == kBumpSlot || use.slot == kNormalSlot; }
-
 // Returns the difference of the smaller magnitude. At a jump, such as the seam of a sphere, only one of both
 // differences includes the jump.
 template <class N>

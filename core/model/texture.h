@@ -113,6 +113,9 @@ struct TextureUse {
   int material = 0;  // number in the scene
 };
 
+// Returns whether a texture tilts shading normals.
+inline bool tilts(const TextureUse& use) { return use.slot == kBumpSlot || use.slot == kNormalSlot; }
+
 // Textures that the materials of a scene may refer to, by index of the name.
 struct TextureNames {
   Names names{"texture"};

@@ -7,13 +7,12 @@ namespace orrery {
 namespace {
 
 void explain_texture(const Scene& scene, std::size_t index, Plan& plan) {
-  bool colours = false, tilts = false;
+  bool colours = false, bumps = false;
   for (const TextureUse& use : scene.texture_uses)
-    if (use.texture == static_cast<int>(index))
-      (use.slot == kBumpSlot || use.slot == kNormalSlot ? tilts : colours) = true;
+    if (use.texture == static_cast<int>(index)) (tilts(use) ? bumps : colours) = true;
   const PlacedTexture& texture = scene.textures[index];
   const std::string what = "texture " + texture.name;
-  if (!colours && !tilts) {
+  if (!colours && !bumps) {
     plan.decisions.push_back({what, "none", "no material uses it", {}});
     return;
   }
@@ -21,7 +20,7 @@ void explain_texture(const Scene& scene, std::size_t index, Plan& plan) {
                             texture.type,
                             std::string(name_of(texture.mapping.kind)) + " mapping, " +
                                 (texture.filtered ? "averaged over the pixel" : "not filtered") +
-                                (tilts ? colours ? "; values and bumps" : "; bumps" : ""),
+                                (bumps ? colours ? "; values and bumps" : "; bumps" : ""),
                             {}});
 }
 
