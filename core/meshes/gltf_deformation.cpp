@@ -15,14 +15,6 @@ Vec3d vector_at(const GltfNumbers& numbers, std::size_t i) {
   return {numbers.value(i, 0), numbers.value(i, 1), numbers.value(i, 2)};
 }
 
-GltfNumbers attribute_of(GltfFile& file, const GltfValue& user, const char* type, std::size_t count) {
-  const GltfNumbers numbers = file.accessor(user, type);
-  if (numbers.count != count)
-    user.fail("must have " + std::to_string(count) + " elements, one per position (got " +
-              std::to_string(numbers.count) + ")");
-  return numbers;
-}
-
 // Adds `map` times `weight`.
 void add_scaled(Affined& sum, const Affined& map, double weight) {
   sum.x = sum.x + map.x * weight;
@@ -72,9 +64,9 @@ void VertexPlacer::read_targets(GltfFile& file, const GltfValue& targets, std::s
     if (pose_.weights[i] == 0) continue;
     Target target{pose_.weights[i], {}, {}};
     if (const auto positions = targets.item(i).find("POSITION"))
-      target.positions = attribute_of(file, *positions, "VEC3", count);
+      target.positions = file.attribute(*positions, "VEC3", count);
     if (const auto normals = targets.item(i).find("NORMAL"))
-      target.normals = attribute_of(file, *normals, "VEC3", count);
+      target.normals = file.attribute(*normals, "VEC3", count);
     targets_.push_back(target);
   }
 }
@@ -84,8 +76,8 @@ void VertexPlacer::read_influences(GltfFile& file, const GltfValue& attributes, 
     const std::string number = std::to_string(set);
     const auto joints = attributes.find(("JOINTS_" + number).c_str());
     if (!joints) break;
-    influences_.push_back({attribute_of(file, *joints, "VEC4", count),
-                           attribute_of(file, attributes.at(("WEIGHTS_" + number).c_str()), "VEC4", count)});
+    influences_.push_back({file.attribute(*joints, "VEC4", count),
+                           file.attribute(attributes.at(("WEIGHTS_" + number).c_str()), "VEC4", count)});
     check_influences(influences_.back().joints, influences_.back().weights, pose_.joints->size(), attributes);
   }
 }

@@ -376,4 +376,12 @@ GltfNumbers GltfFile::accessor(const GltfValue& user, std::string_view type) {
   return elements(accessor, count, type, accessor.at("componentType"), normalized);
 }
 
+GltfNumbers GltfFile::attribute(const GltfValue& user, std::string_view type, std::size_t count) {
+  const GltfNumbers numbers = accessor(user, type);
+  if (numbers.count != count)
+    user.fail("must have " + std::to_string(count) + " elements, one per position (got " +
+              std::to_string(numbers.count) + ")");
+  return numbers;
+}
+
 }  // namespace orrery

@@ -37,6 +37,8 @@ class GltfFile {
   // accessor. Throws InputError if there is no such accessor, an element is outside the buffer view, or the
   // type is not `type` ("SCALAR", "VEC2", "VEC3", "VEC4" or "MAT4").
   GltfNumbers accessor(const GltfValue& user, std::string_view type);
+  // Returns the numbers of an accessor that must have `count` elements, one per position.
+  GltfNumbers attribute(const GltfValue& user, std::string_view type, std::size_t count);
 
   // Decodes the vertices and indices of a primitive that uses KHR_draco_mesh_compression. From then on,
   // accessor() returns them for the accessors of the primitive. Does nothing for other primitives. Throws
