@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "tests/support/errors.h"
 #include "tests/support/random.h"
 
 namespace orrery {
@@ -47,12 +48,7 @@ bool same(const Image& a, const Image& b) {
          std::equal(a.bytes().begin(), a.bytes().end(), b.bytes().begin(), b.bytes().end());
 }
 std::string problem(std::span<const std::byte> bytes, std::size_t max_pixels = std::size_t{1} << 24) {
-  try {
-    decode_image(bytes, max_pixels);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return test::error_of([&] { decode_image(bytes, max_pixels); });
 }
 
 constexpr std::array<std::pair<int, int>, 4> kSizes = {{{1, 1}, {3, 2}, {64, 64}, {257, 31}}};

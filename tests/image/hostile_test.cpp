@@ -9,6 +9,7 @@
 #include "core/image/decode/decode_process.h"
 #include "core/image/decode/picture_file.h"
 #include "core/image/encode/files.h"
+#include "tests/support/errors.h"
 #include "tests/support/sanitized.h"
 
 // Tests files that make decoders use memory or time for data other than texels.
@@ -86,12 +87,7 @@ std::string joined(const PictureFile& file) {
 PictureFile inspect(std::string_view bytes) { return inspect_picture(bytes, picture_format(bytes), {}); }
 
 std::string refusal(const std::string& bytes) {
-  try {
-    inspect(bytes);
-  } catch (const InputError& error) {
-    return error.problems().front().detail;
-  }
-  return "accepted";
+  return detail_of([&] { inspect(bytes); });
 }
 
 TEST(PictureDecoder, StripsTextChunksFromPng) {

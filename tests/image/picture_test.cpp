@@ -10,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/image/encode/files.h"
+#include "tests/support/errors.h"
 
 // Tests the reading of encoded images, damaged images and other files.
 namespace orrery::test {
@@ -43,12 +44,7 @@ std::string hdr(int width, int height, int stated_height) {
 }
 
 std::string refusal(const std::string& bytes, const PictureLimits& limits = {}) {
-  try {
-    read_picture(bytes, limits);
-  } catch (const InputError& error) {
-    return error.problems().front().detail;
-  }
-  return "accepted";
+  return detail_of([&] { read_picture(bytes, limits); });
 }
 
 TEST(Pictures, ReadsExrUnchanged) {

@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/image/decode/picture.h"
+#include "tests/support/errors.h"
 
 // Encodes with libwebp.
 namespace orrery::test {
@@ -48,12 +49,7 @@ std::string webp_of(const Codes& codes, bool lossless) {
 }
 
 std::string webp_refusal(const std::string& bytes) {
-  try {
-    read_picture(bytes);
-  } catch (const InputError& error) {
-    return error.problems().front().detail;
-  }
-  return "accepted";
+  return detail_of([&] { read_picture(bytes); });
 }
 
 double light_of(std::uint8_t code) {

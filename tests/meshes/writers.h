@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/meshes/mesh_file.h"
+#include "tests/support/errors.h"
 
 // Small meshes, and writers of the formats that core/meshes reads.
 namespace orrery::test {
@@ -24,12 +25,7 @@ inline std::vector<Corners> corners_of(const TriangleMesh& mesh) {
 
 // Returns the error of read_mesh, or "accepted".
 inline std::string problem(std::string_view bytes, const MeshLimits& limits = {}) {
-  try {
-    read_mesh(bytes, limits);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return error_of([&] { read_mesh(bytes, limits); });
 }
 
 // Returns the cube [-1, 1]^3 with 8 vertices, 12 triangles and outward front faces. The bits of i determine

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "tests/support/errors.h"
 
 namespace orrery::test {
 namespace {
@@ -13,12 +14,7 @@ using ::testing::StartsWith;
 
 // Returns the error of parsing a document, or "accepted".
 std::string xml_problem(const std::string& text, const XmlLimits& limits = {}) {
-  try {
-    const XmlFile file(text, "x.xml", limits);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return error_of([&] { XmlFile(text, "x.xml", limits); });
 }
 
 TEST(XmlFile, ReadsAttributesByLocalName) {
@@ -33,14 +29,6 @@ TEST(XmlFile, ReadsAttributesByLocalName) {
 TEST(XmlFile, ReportsInvalidValuesWithTheirPlace) {
   const XmlFile file("<a><b x='4294967296' y='nan' z='1 2'/></a>", "x.xml", {});
   const pugi::xml_node b = file.root().first_child();
-  const auto error_of = [](const auto& read) {
-    try {
-      read();
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string("accepted");
-  };
   EXPECT_EQ(error_of([&] { file.integer(b, "x"); }),
             "x.xml, element \"b\" at byte 4: x must be an integer from 0 to 4294967295 (got \"4294967296\")");
   EXPECT_THAT(error_of([&] { file.needed_number(b, "y"); }),

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/meshes/writers.h"
+#include "tests/support/errors.h"
 
 namespace orrery::test {
 namespace {
@@ -13,12 +14,7 @@ using ::testing::HasSubstr;
 
 // Returns the error of opening an archive and reading an entry, or "accepted".
 std::string zip_problem(const std::string& bytes, const std::string& name, const ZipLimits& limits = {}) {
-  try {
-    ZipFile(bytes, limits).read(name);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return error_of([&] { ZipFile(bytes, limits).read(name); });
 }
 
 // "aaaa...", 1,000 times, deflated by zlib at level 9 without a header.
