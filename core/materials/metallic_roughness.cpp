@@ -10,8 +10,8 @@ void MetallicRoughnessInputs<double>::tabulate(double of_roughness) {
   grazing = mirrored_albedo(alpha, [](double cosine) { return fresnel_schlick(0.0, cosine); });
 }
 
-template <>
-void MetallicRoughnessInputs<double>::read(MaterialParams& p) {
+void read_metallic_roughness(MaterialParams& p, Vec3d& base_color, Vec3d& normal_reflectance,
+                             double& metallic, double& roughness) {
   p.coefficient(base_color, "base_color",
                 "Albedo of the dielectric base, or reflectance of the metal, 0 to 1 per channel.", Vec3d(0.8),
                 1);
@@ -23,6 +23,11 @@ void MetallicRoughnessInputs<double>::read(MaterialParams& p) {
            "Roughness from 0 (smooth) to 1; its square is the alpha of the GGX distribution, at least 0.001.",
            {.min = 0, .max = 1}, 0.5);
   if (p.raise_texture(roughness, kMinTexturedRoughness)) roughness = kMinTexturedRoughness;
+}
+
+template <>
+void MetallicRoughnessInputs<double>::read(MaterialParams& p) {
+  read_metallic_roughness(p, base_color, normal_reflectance, metallic, roughness);
   strict = p.plain().flag("strict",
                           "Use the glTF 2.0 formula unchanged, although it does not conserve energy.", false);
 }

@@ -154,4 +154,8 @@ struct MetallicRoughnessInputs {
   }
 };
 
+// Reads the parameters of MetallicRoughness other than `strict` into members of the inputs of a material.
+void read_metallic_roughness(MaterialParams& p, Vec3d& base_color, Vec3d& normal_reflectance,
+                             double& metallic, double& roughness);
+
 }  // namespace orrery

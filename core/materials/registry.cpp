@@ -20,7 +20,8 @@ namespace orrery {
   add(translucent)            \
   add(transparent)            \
   add(hall)                   \
-  add(subsurface)
+  add(subsurface)             \
+  add(coated)
 // clang-format on
 
 #define ORRERY_DECLARE(name) MaterialType name##_type();

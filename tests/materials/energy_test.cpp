@@ -128,6 +128,13 @@ TEST(Ambient, StaysBelowMaterialLimit) {
   for (const double roughness : {0.0, 0.1, 0.3, 1.0}) {
     for (const char* type : {"glass", "metallic-roughness"})
       materials.push_back({{"type", type}, {"roughness", roughness}});
+    for (const double layer : {0.0, 1.0})
+      materials.push_back({{"type", "coated"},
+                           {"base_color", 1},
+                           {"roughness", roughness},
+                           {"coat", layer},
+                           {"coat_roughness", roughness},
+                           {"sheen_color", 1 - layer}});
     materials.push_back({{"type", "metal"}, {"name", "iron"}, {"roughness", roughness}});
     for (const double reflectance : {0.0, 0.5, 1.0})
       materials.push_back({{"type", "plastic"}, {"reflectance", reflectance}, {"roughness", roughness}});

@@ -41,6 +41,9 @@ const Material kMaterials[] = {
      "{'type': 'metallic-roughness', 'base_color': [0.9, 0.5, 0.1], 'metallic': 0.5, 'roughness': 0.6}"},
     {"StrictMetallicRoughness",
      "{'type': 'metallic-roughness', 'base_color': 1, 'roughness': 0.5, 'strict': true}"},
+    {"Coated",
+     "{'type': 'coated', 'base_color': [0.9, 0.5, 0.1], 'metallic': 0.5, 'roughness': 0.6, 'coat': 0.8, "
+     "'coat_roughness': 0.4, 'sheen_color': [0.2, 0.5, 0.7], 'sheen_roughness': 0.6}"},
     {"CookTorrance",
      "{'type': 'cook-torrance', 'n': [1.5, 1.5, 1.5], 'slope': 0.4, 'diffuse': [0.4, 0.2, 0.1], "
      "'specular': 0.6}"},

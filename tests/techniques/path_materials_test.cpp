@@ -137,14 +137,15 @@ TEST_P(LampIllumination, MatchesIntegralOverLamp) {
 }
 INSTANTIATE_TEST_SUITE_P(
     Materials, LampIllumination,
-    testing::Values(Lit{"GlassThrough", "{'type': 'glass', 'roughness': 0.6}", -1},
-                    Lit{"GlassAbove", "{'type': 'glass', 'roughness': 0.6}", 1},
-                    Lit{"Plastic", "{'type': 'plastic', 'roughness': 0.4}", 1},
-                    Lit{"MetallicRoughness",
-                        "{'type': 'metallic-roughness', 'metallic': 0.5, 'roughness': 0.5}", 1},
-                    Lit{"CookTorrance", "{'type': 'cook-torrance', 'diffuse': 0.3, 'specular': 0.7}", 1},
-                    Lit{"TranslucentThrough", "{'type': 'translucent'}", -1},
-                    Lit{"TranslucentAbove", "{'type': 'translucent'}", 1}),
+    testing::Values(
+        Lit{"GlassThrough", "{'type': 'glass', 'roughness': 0.6}", -1},
+        Lit{"GlassAbove", "{'type': 'glass', 'roughness': 0.6}", 1},
+        Lit{"Plastic", "{'type': 'plastic', 'roughness': 0.4}", 1},
+        Lit{"Coated", "{'type': 'coated', 'coat': 1, 'coat_roughness': 0.4, 'sheen_color': 0.5}", 1},
+        Lit{"MetallicRoughness", "{'type': 'metallic-roughness', 'metallic': 0.5, 'roughness': 0.5}", 1},
+        Lit{"CookTorrance", "{'type': 'cook-torrance', 'diffuse': 0.3, 'specular': 0.7}", 1},
+        Lit{"TranslucentThrough", "{'type': 'translucent'}", -1},
+        Lit{"TranslucentAbove", "{'type': 'translucent'}", 1}),
     [](const auto& parameter) { return std::string(parameter.param.name); });
 
 // Returns the radiance of a white floor at the origin, lit with radiance 1 from directions d where sees(d) is

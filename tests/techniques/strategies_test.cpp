@@ -64,6 +64,7 @@ const std::vector<Named> kMaterials = {
     {"RoughMetal", "{'type': 'metal', 'name': 'gold', 'roughness': 0.8}"},
     {"Plastic", "{'type': 'plastic', 'reflectance': 0.4, 'roughness': 0.4}"},
     {"MetallicRoughness", "{'type': 'metallic-roughness', 'metallic': 0.5, 'roughness': 0.6}"},
+    {"Coated", "{'type': 'coated', 'roughness': 0.6, 'coat': 1, 'coat_roughness': 0.5, 'sheen_color': 0.5}"},
     {"CookTorrance", "{'type': 'cook-torrance', 'diffuse': 0.3, 'specular': 0.7}"},
     {"Glass", "{'type': 'glass', 'roughness': 0.6}"},
     {"Rough", "{'type': 'rough', 'kd': 0.5, 'ks': 0.4, 'shininess': 20}"}};
