@@ -15,7 +15,9 @@ PathTracer<T>::PathTracer(const World<T>& world, const Plan& plan, Lobes followe
       sampled_light_(this->geometry_, this->accelerator_, this->plan_, followed),
       has_emission_pass_(!plan.eye_passes && world.geometry->has_textured_emission.empty() &&
                          (!world.geometry->emission.empty() || world.geometry->background != Vec3<T>() ||
-                          !sampled_light_.beyond().empty())) {
+                          !sampled_light_.beyond().empty())),
+      only_background_(has_emission_pass_ && world.geometry->emission.empty() && !this->atmosphere_) {
+  if (only_background_) occluded_ = std::make_unique<RayBatch<T>>();
   if (sampled_light_.wants_diffuse_rays())
     diffuse_rays_ =
         std::make_unique<DiffuseRays<T>>(this->geometry_, this->accelerator_, this->plan_, sampled_light_);
@@ -29,8 +31,12 @@ void PathTracer<T>::trace_emission_only(const RayBatch<T>& camera_rays, const La
                                         TraceResult<T>& out, TraceCounts& counts) {
   auto& v = *this->vertices_;
   counts.rays.camera += active_rays(camera_rays, groups);
-  reset(camera_rays, groups, v.hits);
-  this->accelerator_.closest(camera_rays, groups, v.hits, counts.accelerator);
+  if (only_background_) {
+    find_any_hits(camera_rays, groups, counts);
+  } else {
+    reset(camera_rays, groups, v.hits);
+    this->accelerator_.closest(camera_rays, groups, v.hits, counts.accelerator);
+  }
   if (this->atmosphere_) this->atmosphere_->find(camera_rays, 0, v.hits, groups);
   for (const int i : groups) {
     find_materials(this->geometry_, v.hits, i, v.surface);
@@ -44,6 +50,21 @@ void PathTracer<T>::trace_emission_only(const RayBatch<T>& camera_rays, const La
   for (const int i : groups) v.radiance.put(i, Vec3<N>(N(T(0))));
   sampled_light_.beyond().add(camera_rays, v.hits, groups, nullptr, v.radiance);
   for (const int i : groups) out.radiance.put(i, out.radiance.at(i) + v.radiance.at(i) * N(share));
+}
+
+// Copies the rays on each call, because occlude() changes them.
+template <class T>
+void PathTracer<T>::find_any_hits(const RayBatch<T>& camera_rays, const LaneGroups& groups,
+                                  TraceCounts& counts) {
+  HitBatch<T>& hits = this->vertices_->hits;
+  *occluded_ = camera_rays;
+  this->accelerator_.occlude(*occluded_, groups, counts.accelerator);
+  const N zero(T(0));
+  for (const int i : groups) {
+    const auto hit = camera_rays.t_max.at(i) > zero && occluded_->t_max.at(i) < zero;
+    hits.primitive.put(i, IndexLanes<T>(IndexOf<T>{kNoPrimitive}));
+    hits.primitive.put(i, mask_cast<IndexLanes<T>>(hit), IndexLanes<T>(IndexOf<T>{0}));
+  }
 }
 
 template <class T>

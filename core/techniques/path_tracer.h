@@ -36,6 +36,8 @@ class PathTracer : public Wavefront<T> {
   }
   void shade(const LaneGroups& groups, const LaneGroups& met) final;
 
+  // Sets the hits of rays that hit any surface to the first primitive, and of others to none.
+  void find_any_hits(const RayBatch<T>& camera_rays, const LaneGroups& groups, TraceCounts& counts);
   // Adds ambient light in place of the light that specular surfaces would mirror and refract.
   void add_ambient_of_mirrors(const LaneGroups& met);
   void add_emitted_radiance(const LaneGroups& groups, const LaneGroups& met);
@@ -60,7 +62,9 @@ class PathTracer : public Wavefront<T> {
 
   const Lobes followed_;
   SampledLight<T> sampled_light_;
-  const bool has_emission_pass_;  // false if camera rays may pass surfaces: see MediaStage::pass()
+  const bool has_emission_pass_;           // false if camera rays may pass surfaces: see MediaStage::pass()
+  const bool only_background_;             // no surface emits, so the emission pass asks for any hit only
+  std::unique_ptr<RayBatch<T>> occluded_;  // null unless only_background_
   std::unique_ptr<DiffuseRays<T>> diffuse_rays_;  // null unless SampledLight::wants_diffuse_rays()
   std::unique_ptr<PathReuse<T>> reuse_;           // null without path reuse
   std::unique_ptr<Vec3Array<T>> indirect_;        // by camera ray; null without clamping
