@@ -85,6 +85,28 @@ Vec3d corner_normal(std::uint32_t corner, const Corners& corners, const Facets& 
   return {0, 0, 1};  // reached only for triangles without area, which no ray hits
 }
 
+// Returns one normal per position, or 0 for positions whose corners may have different normals. Around the
+// others, every facet is within half of the crease angle of the first, so every corner averages over all.
+std::vector<Vec3d> shared_normals(const Corners& corners, const Facets& facets, double crease_degrees) {
+  constexpr double kMargin = 1e-9;  // far above the rounding errors of cosines
+  const double min_cosine = sine_cosine_degrees(crease_degrees / 2).cosine + kMargin;
+  std::vector<Vec3d> shared(corners.first.size() - 1);
+  for (std::size_t position = 0; position < shared.size(); ++position) {
+    checkpoint();
+    const std::uint32_t begin = corners.first[position], end = corners.first[position + 1];
+    Vec3d sum;
+    std::uint32_t i = begin;
+    for (; i < end; ++i) {
+      checkpoint(i);
+      const std::uint32_t corner = corners.list[i];
+      if (!(dot(facets.normals[corners.list[begin] / 3], facets.normals[corner / 3]) > min_cosine)) break;
+      sum = sum + facets.weighted[corner];
+    }
+    if (i == end) shared[position] = safe_normalize(sum);
+  }
+  return shared;
+}
+
 }  // namespace
 
 PositionIndices position_indices_of(const std::vector<Vec3d>& positions) {
@@ -114,6 +136,7 @@ void smooth_normals(TriangleMesh& mesh, double crease_degrees, const PositionInd
   const Corners corners(mesh, places);
   const Facets facets(mesh);
   const double min_cosine = sine_cosine_degrees(crease_degrees).cosine;
+  const std::vector<Vec3d> shared = shared_normals(corners, facets, crease_degrees);
   VertexList vertices(true, !mesh.uvs.empty(), !mesh.colors.empty());
   std::vector<std::array<std::uint32_t, 3>> triangles = mesh.triangles;
   constexpr std::uint32_t kNone = ~0u;
@@ -121,7 +144,8 @@ void smooth_normals(TriangleMesh& mesh, double crease_degrees, const PositionInd
   for (std::uint32_t t = 0; t < triangles.size(); ++t)
     for (std::uint32_t k = 0; k < 3; ++k) {
       const std::uint32_t old = triangles[t][k];
-      const Vec3d normal = corner_normal(3 * t + k, corners, facets, min_cosine);
+      const Vec3d& same = shared[places[old]];
+      const Vec3d normal = same == Vec3d() ? corner_normal(3 * t + k, corners, facets, min_cosine) : same;
       if (last[old] == kNone || vertices.normal(last[old]) != normal) {
         Vertex vertex = vertex_of(mesh, old);
         vertex.normal = normal;

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "tests/meshes/writers.h"
+#include "tests/support/random.h"
 
 namespace orrery::test {
 namespace {
@@ -81,6 +82,50 @@ TEST(SmoothNormals, ConvergesToNormalsOfSphere) {
     EXPECT_LT(worst, 0.5 * step * step) << n;
     EXPECT_LT(worst, 0.3 * last) << n;
     last = worst;
+  }
+}
+
+// Compares each corner of a bumpy surface with the definition: the mean of the facets at its position whose
+// normals differ by less than the crease angle, weighted by their angles.
+TEST(SmoothNormals, AveragesFacetsWithinCreaseAngle) {
+  constexpr std::uint32_t kSide = 20;
+  for (const double bump : {0.05, 0.4, 1.5}) {
+    Random random(3);
+    TriangleMesh mesh;
+    for (std::uint32_t i = 0; i < kSide * kSide; ++i)
+      mesh.positions.push_back(
+          {static_cast<double>(i % kSide), static_cast<double>(i / kSide), bump * random.unit()});
+    for (std::uint32_t y = 0; y + 1 < kSide; ++y)
+      for (std::uint32_t x = 0; x + 1 < kSide; ++x) {
+        const std::uint32_t a = y * kSide + x;
+        mesh.triangles.push_back({a, a + 1, a + kSide + 1});
+        mesh.triangles.push_back({a, a + kSide + 1, a + kSide});
+      }
+    TriangleMesh smooth = mesh;
+    smooth_normals(smooth, 30);
+    const auto corner = [&](std::size_t t, std::size_t k) {
+      return mesh.positions[mesh.triangles[t][k % 3]];
+    };
+    const auto facet = [&](std::size_t t) {
+      return normalize(cross(corner(t, 1) - corner(t, 0), corner(t, 2) - corner(t, 0)));
+    };
+    std::size_t several = 0;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      for (std::size_t k = 0; k < 3; ++k) {
+        Vec3d sum;
+        for (std::size_t other = 0; other < mesh.triangles.size(); ++other)
+          for (std::size_t j = 0; j < 3; ++j) {
+            if (mesh.triangles[other][j] != mesh.triangles[t][k]) continue;
+            const Vec3d u = normalize(corner(other, j + 1) - corner(other, j)),
+                        v = normalize(corner(other, j + 2) - corner(other, j));
+            if (std::acos(std::min(1.0, dot(facet(t), facet(other)))) < std::numbers::pi / 6)
+              sum = sum + facet(other) * std::acos(dot(u, v));
+            else
+              ++several;
+          }
+        EXPECT_LE(length(smooth.normals[smooth.triangles[t][k]] - normalize(sum)), 1e-12) << t << " " << k;
+      }
+    EXPECT_EQ(several == 0, bump == 0.05);
   }
 }
 
