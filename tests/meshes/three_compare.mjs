@@ -5,16 +5,14 @@
 //   npm install --no-save three
 //   node tests/meshes/three_compare.mjs SHEET.jpg MODEL...     prints the RMS difference of the codes, divided by 255
 
-import { execFileSync, spawnSync } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { readFileSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
-import { tmpdir } from "node:os";
-import { basename, extname, join, resolve } from "node:path";
+import { extname, join, resolve } from "node:path";
 
 import { chromium } from "playwright-core";
 
-const kProgram = process.env.TEST_ORRERY ?? "build/orrery";
-const kSide = 512;
+import { compareSideBySide, kSide } from "./side_by_side.mjs";
+
 const kTypes = { ".js": "text/javascript", ".glb": "model/gltf-binary", ".gltf": "model/gltf+json" };
 
 const kPage = `<!doctype html><canvas id="canvas"></canvas>
@@ -68,31 +66,20 @@ const server = createServer((request, response) => {
   }
 });
 await new Promise((done) => server.listen(0, "127.0.0.1", done));
-const scratch = mkdtempSync(join(tmpdir(), "orrery-"));
 const browser = await chromium.launch({
   executablePath: "/usr/bin/chromium",
   args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
 });
 try {
-  const images = [];
-  for (const model of models.map((path) => resolve(path))) {
-    const view = (...args) => execFileSync(kProgram, ["view", model, ...args], { stdio: ["ignore", "pipe", "ignore"] });
-    const names = ["ours", "three"].map((name) => join(scratch, `${images.length}-${name}.png`));
-    view("-o", names[0], "--samples", "64", "--width", kSide, "--height", kSide);
+  await compareSideBySide(sheet, models, async (model, scene, file) => {
     const page = await browser.newPage();
     await page.goto(`http://127.0.0.1:${server.address().port}/`);
     await page.waitForFunction(() => globalThis.ready);
-    const scene = JSON.parse(view("--print-scene", "-o", "-"));
     const data = await page.evaluate(([url, from]) => globalThis.show(url, from), [`/model${model}`, scene]);
-    writeFileSync(names[1], Buffer.from(data.split(",")[1], "base64"));
+    writeFileSync(file, Buffer.from(data.split(",")[1], "base64"));
     await page.close();
-    const { stderr } = spawnSync("compare", ["-metric", "RMSE", ...names, "null:"], { encoding: "utf8" });
-    console.log(`${stderr.match(/\((.*)\)/)?.[1] ?? stderr}  ${basename(model)}`);
-    images.push(...names);
-  }
-  execFileSync("montage", [...images, "-tile", "4x", "-geometry", "256x256+2+2", "-quality", "88", sheet]);
+  });
 } finally {
   await browser.close();
   server.close();
-  rmSync(scratch, { recursive: true, force: true });
 }
