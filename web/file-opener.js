@@ -30,7 +30,13 @@ export function chosenOf(files) {
 // Query of POST v1/view: frames the model for a whole turn on a stage of this aspect ratio. Renders one sample.
 function viewQuery(aspect) {
   const pixels = (part) => Math.max(1, Math.round(LONGER_SIDE * Math.min(1, part)));
-  return new URLSearchParams({ width: pixels(aspect), height: pixels(1 / aspect), samples: 1, fit: "turn" });
+  return new URLSearchParams({
+    width: pixels(aspect),
+    height: pixels(1 / aspect),
+    samples: 1,
+    fit: "turn",
+    pose_time: "all",
+  });
 }
 
 export class FileOpener {

@@ -44,4 +44,12 @@ inline std::string shortened(std::string_view text, std::size_t characters = kMa
   return std::string(first) + "... (" + std::to_string(character_count(text)) + " characters)";
 }
 
+// Returns the names separated by commas, shortened, or "none" if there are none.
+template <class List>
+std::string shortened_names(const List& names) {
+  std::string all;
+  for (const auto& name : names) all += (all.empty() ? "" : ", ") + std::string(name);
+  return all.empty() ? "none" : shortened(all, 200);
+}
+
 }  // namespace orrery

@@ -25,9 +25,8 @@ fs::path path_within(const fs::path& given_folder, const std::string& name, cons
   return path;
 }
 
-MeshModelPtr share_model(std::string_view bytes, const ReadNearby& nearby,
-                         const std::optional<ModelPose>& pose) {
-  return std::make_shared<const MeshModel>(read_model(bytes, {}, nearby, pose));
+MeshModelPtr share_model(std::string_view bytes, const ReadNearby& nearby, const ModelState& state) {
+  return std::make_shared<const MeshModel>(read_model(bytes, {}, nearby, state));
 }
 
 }  // namespace
@@ -43,11 +42,11 @@ ReadNearby files_near(const fs::path& file) {
   };
 }
 
-ModelFile read_model_file(const std::string& path, const std::optional<ModelPose>& pose) {
+ModelFile read_model_file(const std::string& path, const ModelState& state) {
   const std::string bytes = read_file(path);
   const bool is_file = path != "-";
   try {
-    return {bytes.size(), share_model(bytes, is_file ? files_near(path) : ReadNearby(), pose)};
+    return {bytes.size(), share_model(bytes, is_file ? files_near(path) : ReadNearby(), state)};
   } catch (const InputError& error) {
     throw BadScene(is_file ? path : "standard input", error);
   }
@@ -65,9 +64,9 @@ auto AssetFiles::read_with(const std::string& name, const Read& read) const {
   }
 }
 
-MeshModelPtr AssetFiles::model_file(const std::string& name, const std::optional<ModelPose>& pose) const {
+MeshModelPtr AssetFiles::model_file(const std::string& name, const ModelState& state) const {
   return read_with(name, [&](const std::string& bytes, const fs::path& path) {
-    return share_model(bytes, files_near(path), pose);
+    return share_model(bytes, files_near(path), state);
   });
 }
 

@@ -14,15 +14,15 @@ struct ModelFile {
   std::size_t bytes;
   MeshModelPtr model;
 };
-// Reads a model file in a pose (see read_model()) with the files in its folder that it names, or standard
+// Reads a model file in a state (see read_model()) with the files in its folder that it names, or standard
 // input if `path` is "-". Throws FileError, and BadScene if the file is invalid.
-ModelFile read_model_file(const std::string& path, const std::optional<ModelPose>& pose = {});
+ModelFile read_model_file(const std::string& path, const ModelState& state = {});
 
 // Mesh and image files in the folder of a scene or below it.
 class AssetFiles final : public AssetSource {
  public:
   explicit AssetFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
-  MeshModelPtr model_file(const std::string& name, const std::optional<ModelPose>& pose) const override;
+  MeshModelPtr model_file(const std::string& name, const ModelState& state) const override;
   TexelsPtr picture_file(const std::string& name) const override;
 
  private:

@@ -14,14 +14,12 @@ const Asset& once(std::map<Name, Asset>& assets, const std::type_identity_t<Name
 
 }  // namespace
 
-MeshModelPtr CachedAssetSource::model_file(const std::string& name,
-                                           const std::optional<ModelPose>& pose) const {
-  return once(files_, {name, pose}, [&] { return from_.model_file(name, pose); });
+MeshModelPtr CachedAssetSource::model_file(const std::string& name, const ModelState& state) const {
+  return once(files_, {name, state}, [&] { return from_.model_file(name, state); });
 }
 
-MeshModelPtr CachedAssetSource::model_asset(const std::string& sha256,
-                                            const std::optional<ModelPose>& pose) const {
-  return once(assets_, {sha256, pose}, [&] { return from_.model_asset(sha256, pose); });
+MeshModelPtr CachedAssetSource::model_asset(const std::string& sha256, const ModelState& state) const {
+  return once(assets_, {sha256, state}, [&] { return from_.model_asset(sha256, state); });
 }
 
 TexelsPtr CachedAssetSource::picture_file(const std::string& name) const {

@@ -17,8 +17,8 @@ class CachedAssetSource final : public AssetSource {
   explicit CachedAssetSource(const AssetSource& from, std::size_t max_texels = kMaxTextureTexels)
       : from_(from), max_texels_(max_texels) {}
 
-  MeshModelPtr model_file(const std::string& name, const std::optional<ModelPose>& pose) const override;
-  MeshModelPtr model_asset(const std::string& sha256, const std::optional<ModelPose>& pose) const override;
+  MeshModelPtr model_file(const std::string& name, const ModelState& state) const override;
+  MeshModelPtr model_asset(const std::string& sha256, const ModelState& state) const override;
   TexelsPtr picture_file(const std::string& name) const override;
   TexelsPtr picture_asset(const std::string& sha256) const override;
   // Throws InputError for the image that exceeds the limit, and returns null for further ones.
@@ -28,7 +28,7 @@ class CachedAssetSource final : public AssetSource {
   std::vector<Problem> take_notes() const { return std::move(notes_); }
 
  private:
-  using PosedName = std::pair<std::string, std::optional<ModelPose>>;
+  using ModelKey = std::pair<std::string, ModelState>;
 
   TexelsPtr noted(const std::string& name, TexelsPtr texels) const;
 
@@ -36,7 +36,7 @@ class CachedAssetSource final : public AssetSource {
   const std::size_t max_texels_;
   mutable std::size_t texels_ = 0;
   mutable std::vector<Problem> notes_;
-  mutable std::map<PosedName, MeshModelPtr> files_, assets_;
+  mutable std::map<ModelKey, MeshModelPtr> files_, assets_;
   mutable std::map<std::string, TexelsPtr> picture_files_, picture_assets_;
   mutable std::map<std::string, ImageLevelsPtr> levels_;
 };

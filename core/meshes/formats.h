@@ -19,7 +19,7 @@ MeshModel read_obj(std::string_view bytes, const MeshLimits& limits, const ReadN
 TriangleMesh read_ply(std::string_view bytes, const MeshLimits& limits);
 TriangleMesh read_stl(std::string_view bytes, const MeshLimits& limits);
 MeshModel read_gltf(std::string_view bytes, const MeshLimits& limits, const ReadNearby& nearby,
-                    const std::optional<ModelPose>& pose);
+                    const ModelState& state);
 MeshModel read_three_mf(std::string_view bytes, const MeshLimits& limits);
 
 // Returns true for a ZIP archive with a model part of 3MF. Throws InputError if an archive cannot be read.

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "core/base/shorten.h"
 #include "core/base/task_scope.h"
 #include "core/meshes/formats.h"
 #include "core/meshes/gltf_animation.h"
@@ -17,12 +18,13 @@ namespace {
 // Maximum number of placed primitives. A small file can place many primitives, because nodes may share a
 // mesh.
 constexpr std::size_t kMaxPlaced = 250'000;
+constexpr const char* kVariants = "KHR_materials_variants";
 constexpr std::size_t kMaxNamed = 20;  // extensions that notes name
 
 // Extensions that are supported, except those of materials.
-constexpr std::string_view kSupported[] = {"KHR_mesh_quantization", "EXT_meshopt_compression",
+constexpr std::string_view kSupported[] = {"KHR_mesh_quantization",      "EXT_meshopt_compression",
                                            "KHR_draco_mesh_compression", "KHR_lights_punctual",
-                                           "EXT_texture_webp"};
+                                           "EXT_texture_webp",           kVariants};
 
 bool is_supported(std::string_view extension) {
   return std::find(std::begin(kSupported), std::end(kSupported), extension) != std::end(kSupported);
@@ -38,8 +40,8 @@ bool is_harmless(std::string_view extension) {
 class SceneReader {
  public:
   SceneReader(std::string_view bytes, const MeshLimits& limits, const ReadNearby& nearby,
-              const std::optional<ModelPose>& pose)
-      : file_(bytes, nearby), limits_(limits), pose_(pose) {}
+              const ModelState& state)
+      : file_(bytes, nearby), limits_(limits), state_(state) {}
 
   MeshModel read() {
     if (const auto required = file_.root().find("extensionsRequired"))
@@ -49,7 +51,9 @@ class SceneReader {
           extension.fail("must be an extension that does not change geometry (got " +
                          excerpt(extension.text()) + ")");
     materials_ = read_gltf_materials(file_);
-    if (pose_) node_poses_ = read_pose(file_, *pose_);
+    if (state_.pose) node_poses_ = read_pose(file_, *state_.pose);
+    read_variants();
+    model_.animations = list_animations(file_);
     place(file_.root().at("nodes"));
     for_each_attribute([&](auto& list, auto filler) {
       if (!list.empty()) list.resize(mesh_.positions.size(), filler);
@@ -65,11 +69,10 @@ class SceneReader {
   // Names the contents that are not modelled.
   void add_notes() {
     mesh_.notes = std::move(materials_.notes);
-    const auto list = file_.root().find("animations");
-    if (list && list->size() > 0 && !pose_)
-      mesh_.notes.push_back(list->size() == 1 ? "the model is at rest, without its animation"
-                                              : "the model is at rest, without its " + grouped(list->size()) +
-                                                    " animations");
+    if (const std::size_t count = model_.animations.size(); count > 0 && !state_.pose)
+      mesh_.notes.push_back(count == 1
+                                ? "the model is at rest, without its animation"
+                                : "the model is at rest, without its " + grouped(count) + " animations");
     if (without_surface_ > 0)
       mesh_.notes.push_back(grouped(without_surface_) + " primitives of points or lines are not rendered");
     if (const auto used = file_.root().find("extensionsUsed"))
@@ -185,6 +188,33 @@ class SceneReader {
            });
   }
 
+  void read_variants() {
+    std::vector<std::string>& names = model_.variants;
+    if (const auto extension = extension_of(file_.root(), kVariants)) {
+      const GltfValue list = extension->at("variants");
+      for (std::size_t i = 0; i < list.size(); ++i) names.push_back(list.item(i).at("name").text());
+    }
+    if (state_.variant.empty()) return;
+    const auto named = std::find(names.begin(), names.end(), state_.variant);
+    if (named == names.end())
+      throw InputError("", "variant must be one of the file, which has " + shortened_names(names) + " (got " +
+                               excerpt(state_.variant) + ")");
+    variant_ = static_cast<std::uint64_t>(named - names.begin());
+  }
+
+  // Returns the material of a primitive in the variant, or nullopt if it has none.
+  std::optional<GltfValue> material_of(const GltfValue& primitive) const {
+    if (const auto extension = variant_ ? extension_of(primitive, kVariants) : std::nullopt) {
+      const GltfValue mappings = extension->at("mappings");
+      for (std::size_t i = 0; i < mappings.size(); ++i) {
+        const GltfValue variants = mappings.item(i).at("variants");
+        for (std::size_t k = 0; k < variants.size(); ++k)
+          if (variants.item(k).integer() == *variant_) return mappings.item(i).at("material");
+      }
+    }
+    return primitive.find("material");
+  }
+
   void add_primitive(const GltfValue& primitive, const MeshPose& pose) {
     if (++placed_ > kMaxPlaced)
       primitive.fail("file places more than " + grouped(kMaxPlaced) + " primitives (limit " +
@@ -199,8 +229,7 @@ class SceneReader {
     const GltfValue attributes = primitive.at("attributes");
     const std::size_t first = mesh_.positions.size();
     MeshPart part{static_cast<std::uint32_t>(mesh_.triangles.size())};
-    const auto material = primitive.find("material");
-    if (material) {
+    if (const auto material = material_of(primitive)) {
       file_.root().at("materials").item(material->integer());  // throws if there is no such material
       part.material = static_cast<std::int32_t>(material->integer());
     }
@@ -236,7 +265,7 @@ class SceneReader {
       if (!is_position(p)) attributes.fail(position_problem(p, " at vertex " + std::to_string(i)));
       mesh_.positions.push_back(p);
     }
-    const auto normals = optional_accessor(attributes, "NORMAL", "VEC3", positions.count);
+    const auto normals = optional_attribute(attributes, "NORMAL", "VEC3", positions.count);
     part.has_normals = normals.has_value();
     if (normals) mesh_.normals.resize(first, Vec3d(0, 0, 1));
     for (std::size_t i = 0; normals && i < positions.count; ++i) {
@@ -250,7 +279,7 @@ class SceneReader {
     }
     const int set = part.material < 0 ? 0 : materials_.uv_sets[static_cast<std::size_t>(part.material)];
     const auto uvs =
-        optional_accessor(attributes, ("TEXCOORD_" + std::to_string(set)).c_str(), "VEC2", positions.count);
+        optional_attribute(attributes, ("TEXCOORD_" + std::to_string(set)).c_str(), "VEC2", positions.count);
     part.has_uvs = uvs.has_value();
     if (uvs) mesh_.uvs.resize(first);
     for (std::size_t i = 0; uvs && i < positions.count; ++i) {
@@ -270,12 +299,12 @@ class SceneReader {
     if (!index) return;
     const std::string& type = file_.root().at("accessors").item(index->integer()).at("type").text();
     const std::size_t count = mesh_.positions.size() - first;
-    const auto colors = optional_accessor(attributes, "COLOR_0", type == "VEC4" ? "VEC4" : "VEC3", count);
+    const GltfNumbers colors = file_.attribute(*index, type == "VEC4" ? "VEC4" : "VEC3", count);
     part.has_colors = true;
     mesh_.colors.resize(first, Vec3d(1));
     for (std::size_t i = 0; i < count; ++i) {
       checkpoint(i);
-      const Vec3d color(colors->value(i, 0), colors->value(i, 1), colors->value(i, 2));
+      const Vec3d color(colors.value(i, 0), colors.value(i, 1), colors.value(i, 2));
       const auto in_range = [](double x) { return x >= 0 && x <= 1; };
       if (!in_range(color.x) || !in_range(color.y) || !in_range(color.z))
         index->fail("colours must be from 0 to 1 (got " + text_of(color) + " at vertex " + std::to_string(i) +
@@ -284,15 +313,10 @@ class SceneReader {
     }
   }
 
-  std::optional<GltfNumbers> optional_accessor(const GltfValue& attributes, const char* name,
-                                               const char* type, std::size_t count) {
+  std::optional<GltfNumbers> optional_attribute(const GltfValue& attributes, const char* name,
+                                                const char* type, std::size_t count) {
     const auto index = attributes.find(name);
-    if (!index) return std::nullopt;
-    const GltfNumbers numbers = file_.accessor(*index, type);
-    if (numbers.count != count)
-      index->fail("must have " + std::to_string(count) + " elements, one per position (got " +
-                  std::to_string(numbers.count) + ")");
-    return numbers;
+    return index ? std::optional(file_.attribute(*index, type, count)) : std::nullopt;
   }
 
   // Returns indices into mesh_.positions. `first` is the index of the primitive's first position.
@@ -333,7 +357,8 @@ class SceneReader {
 
   GltfFile file_;
   const MeshLimits& limits_;
-  const std::optional<ModelPose>& pose_;
+  const ModelState& state_;
+  std::optional<std::uint64_t> variant_;  // number in the file
   GltfPose node_poses_;
   TriangleMesh mesh_;
   GltfMaterials materials_;
@@ -346,8 +371,8 @@ class SceneReader {
 }  // namespace
 
 MeshModel read_gltf(std::string_view bytes, const MeshLimits& limits, const ReadNearby& nearby,
-                    const std::optional<ModelPose>& pose) {
-  return SceneReader(bytes, limits, nearby, pose).read();
+                    const ModelState& state) {
+  return SceneReader(bytes, limits, nearby, state).read();
 }
 
 }  // namespace orrery

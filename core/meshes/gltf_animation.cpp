@@ -163,6 +163,22 @@ void read_channel(GltfFile& file, const GltfValue& animation, const GltfValue& c
   }
 }
 
+// Returns the largest time of the keyframes, which accessors of times state as their maximum, or 0 if an
+// accessor is invalid.
+double duration_of(const GltfFile& file, const GltfValue& animation) {
+  double seconds = 0;
+  try {
+    const GltfValue samplers = animation.at("samplers"), accessors = file.root().at("accessors");
+    for (std::size_t i = 0; i < samplers.size(); ++i) {
+      const double last = accessors.item(samplers.item(i).at("input").integer()).at("max").item(0).number();
+      if (std::isfinite(last)) seconds = std::max(seconds, last);
+    }
+  } catch (const InputError&) {
+    return 0;
+  }
+  return seconds;
+}
+
 }  // namespace
 
 GltfPose read_pose(GltfFile& file, const ModelPose& pose) {
@@ -175,6 +191,18 @@ GltfPose read_pose(GltfFile& file, const ModelPose& pose) {
   for (std::size_t i = 0; i < channels.size(); ++i) {
     checkpoint();
     read_channel(file, animation, channels.item(i), pose.time, found);
+  }
+  return found;
+}
+
+std::vector<ModelAnimation> list_animations(const GltfFile& file) {
+  std::vector<ModelAnimation> found;
+  const auto animations = file.root().find("animations");
+  for (std::size_t i = 0; animations && i < animations->size(); ++i) {
+    checkpoint();
+    const GltfValue animation = animations->item(i);
+    const auto name = animation.find("name");
+    found.push_back({name ? name->text() : "", duration_of(file, animation)});
   }
   return found;
 }

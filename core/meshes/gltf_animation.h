@@ -16,4 +16,7 @@ using GltfPose = std::map<std::size_t, NodePose>;
 // InputError if the file lacks the animation, or if the animation is invalid.
 GltfPose read_pose(GltfFile& file, const ModelPose& pose);
 
+// Returns the animations of the file, which are not checked.
+std::vector<ModelAnimation> list_animations(const GltfFile& file);
+
 }  // namespace orrery

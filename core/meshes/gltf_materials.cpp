@@ -13,13 +13,15 @@
 
 // glTF 2.0 (Khronos, ISO/IEC 12113:2022): section 3.8 (texture data) and section 3.9 (materials). Extensions:
 // KHR_texture_transform, KHR_materials_emissive_strength, KHR_materials_unlit, KHR_materials_ior,
-// KHR_materials_specular, KHR_materials_transmission and KHR_materials_volume without their textures.
+// KHR_materials_specular, KHR_materials_clearcoat and KHR_materials_sheen with the textures of colours and of
+// the clear coat, KHR_materials_transmission and KHR_materials_volume without their textures.
 namespace orrery {
 namespace {
 
 constexpr std::string_view kExtensions[] = {
-    "KHR_texture_transform",  "KHR_materials_emissive_strength", "KHR_materials_unlit", "KHR_materials_ior",
-    "KHR_materials_specular", "KHR_materials_transmission",      "KHR_materials_volume"};
+    "KHR_texture_transform", "KHR_materials_emissive_strength", "KHR_materials_unlit",
+    "KHR_materials_ior",     "KHR_materials_specular",          "KHR_materials_transmission",
+    "KHR_materials_volume",  "KHR_materials_clearcoat",         "KHR_materials_sheen"};
 constexpr std::size_t kMaxNotes = 20;  // notes about images
 // Buffer views of images may overlap, and each image is a copy.
 constexpr std::size_t kMaxImageBytes = std::size_t{1} << 30;
@@ -60,12 +62,11 @@ class MaterialReader {
       found_.uv_sets.push_back(uv_set_.value_or(0));
     }
     missing_images_.move_to(found_.notes);
-    const auto report = [&](std::size_t count, const char* what) {
-      if (count > 0) found_.notes.push_back(grouped(count) + what);
-    };
-    report(transmission_textures_, " textures of KHR_materials_transmission are not modelled");
-    report(specular_textures_, " textures of KHR_materials_specular are not modelled");
-    report(mixed_sets_, " materials use two sets of texture coordinates, of which one is modelled");
+    for (const auto& [extension, count] : ignored_textures_)
+      found_.notes.push_back(grouped(count) + " textures of " + std::string(extension) + " are not modelled");
+    if (mixed_sets_ > 0)
+      found_.notes.push_back(grouped(mixed_sets_) +
+                             " materials use two sets of texture coordinates, of which one is modelled");
     return std::move(found_);
   }
 
@@ -85,9 +86,11 @@ class MaterialReader {
       material.normal = {number_or(json.at("normalTexture"), "scale", 1, -kMaxScale, kMaxScale), texture};
     if (const auto mode = json.find("alphaMode")) material.alpha = alpha_of(*mode);
     material.cutoff = number_or(json, "alphaCutoff", 0.5, 0, std::numeric_limits<double>::max());
-    material.normal_reflectance = read_normal_reflectance(json);
     material.ior = read_ior(json);
+    read_normal_reflectance(json, material);
     read_transmission(json, material);
+    read_coat(json, material);
+    read_sheen(json, material);
     material.unlit = extension_of(json, "KHR_materials_unlit").has_value();
   }
 
@@ -96,7 +99,7 @@ class MaterialReader {
     const auto transmission = extension_of(json, "KHR_materials_transmission");
     if (!transmission) return;
     material.transmission = number_or(*transmission, "transmissionFactor", 0, 0, 1);
-    if (transmission->find("transmissionTexture")) ++transmission_textures_;
+    ignore_texture(*transmission, "transmissionTexture", "KHR_materials_transmission");
     const auto volume = extension_of(json, "KHR_materials_volume");
     if (!volume || !(number_or(*volume, "thicknessFactor", 0, 0, kMaxDistance) > 0)) return;
     material.has_volume = true;
@@ -114,20 +117,52 @@ class MaterialReader {
     return ior ? number_or(*ior, "ior", 1.5, 0, kMaxIor) : 1.5;
   }
 
-  // The reflectance of a dielectric with an index n is ((n - 1) / (n + 1))^2. An index of 0 makes it 1.
-  Vec3d read_normal_reflectance(const GltfValue& json) {
-    const double index = read_ior(json);
-    const double root = (index - 1) / (index + 1);
-    Vec3d reflectance(index == 1.5 ? 0.04 : root * root);
+  // The reflectance of a dielectric with an index n is ((n - 1) / (n + 1))^2. An index of 0 makes it 1. If
+  // there are two textures, the one of the colour is modelled.
+  void read_normal_reflectance(const GltfValue& json, ModelMaterial& material) {
+    Vec3d& reflectance = material.normal_reflectance.factor;
+    const double root = (material.ior - 1) / (material.ior + 1);
+    reflectance = Vec3d(material.ior == 1.5 ? 0.04 : root * root);
     const auto specular = extension_of(json, "KHR_materials_specular");
-    if (!specular) return reflectance;
-    const Vec3d color = color_or(*specular, "specularColorFactor", Vec3d(1), kMaxIor);
+    if (!specular) return;
+    reflectance = reflectance * color_or(*specular, "specularColorFactor", Vec3d(1), kMaxIor);
     const auto within = [](double x) { return std::min(x, 1.0); };
-    reflectance = reflectance * color;
-    reflectance = {within(reflectance.x), within(reflectance.y), within(reflectance.z)};
-    for (const char* key : {"specularTexture", "specularColorTexture"})
-      if (specular->find(key)) ++specular_textures_;
-    return reflectance * number_or(*specular, "specularFactor", 1, 0, 1);
+    reflectance = Vec3d(within(reflectance.x), within(reflectance.y), within(reflectance.z)) *
+                  number_or(*specular, "specularFactor", 1, 0, 1);
+    material.normal_reflectance.texture = read_texture(*specular, "specularColorTexture");
+    if (material.normal_reflectance.texture) {
+      ignore_texture(*specular, "specularTexture", "KHR_materials_specular");
+    } else {
+      material.normal_reflectance.texture = read_texture(*specular, "specularTexture");
+      material.reflectance_in_alpha = true;
+    }
+  }
+
+  void read_coat(const GltfValue& json, ModelMaterial& material) {
+    constexpr const char* kName = "KHR_materials_clearcoat";
+    const auto coat = extension_of(json, kName);
+    if (!coat) return;
+    material.coat.factor = number_or(*coat, "clearcoatFactor", 0, 0, 1);
+    if (material.coat.factor > 0) material.coat.texture = read_texture(*coat, "clearcoatTexture");
+    material.coat_roughness = number_or(*coat, "clearcoatRoughnessFactor", 0, 0, 1);
+    for (const char* key : {"clearcoatRoughnessTexture", "clearcoatNormalTexture"})
+      ignore_texture(*coat, key, kName);
+  }
+
+  void read_sheen(const GltfValue& json, ModelMaterial& material) {
+    constexpr const char* kName = "KHR_materials_sheen";
+    const auto sheen = extension_of(json, kName);
+    if (!sheen) return;
+    material.sheen.factor = color_or(*sheen, "sheenColorFactor", Vec3d(0));
+    if (!(material.sheen.factor == Vec3d(0)))
+      material.sheen.texture = read_texture(*sheen, "sheenColorTexture");
+    material.sheen_roughness = number_or(*sheen, "sheenRoughnessFactor", 0, 0, 1);
+    ignore_texture(*sheen, "sheenRoughnessTexture", kName);
+  }
+
+  // Counts a texture that is not modelled, for the notes.
+  void ignore_texture(const GltfValue& extension, const char* key, std::string_view name) {
+    if (extension.find(key)) ++ignored_textures_[name];
   }
 
   void read_pbr(const GltfValue& pbr, ModelMaterial& material) {
@@ -249,7 +284,8 @@ class MaterialReader {
   std::size_t image_bytes_ = 0;
   std::optional<int> uv_set_;  // set of the current material
   NoteList missing_images_{kMaxNotes, " more images are missing"};
-  std::size_t mixed_sets_ = 0, specular_textures_ = 0, transmission_textures_ = 0;
+  std::map<std::string_view, std::size_t> ignored_textures_;  // by extension
+  std::size_t mixed_sets_ = 0;
 };
 
 }  // namespace

@@ -107,26 +107,25 @@ std::string joined(const std::vector<std::string>& notes) {
 }
 
 MeshModel read_as(MeshFormat format, std::string_view bytes, const MeshLimits& limits,
-                  const ReadNearby& nearby, const std::optional<ModelPose>& pose) {
-  if (pose && format != MeshFormat::gltf)
-    throw InputError(
-        "", "must be a glTF file to have a pose at a time (got " + std::string(name_of(format)) + ")");
+                  const ReadNearby& nearby, const ModelState& state) {
+  if (state != ModelState() && format != MeshFormat::gltf)
+    throw InputError("", "must be a glTF file to have a pose at a time or a variant (got " +
+                             std::string(name_of(format)) + ")");
   switch (format) {
     case MeshFormat::obj: return read_obj(bytes, limits, nearby);
     case MeshFormat::ply: return {read_ply(bytes, limits), {}, {}};
     case MeshFormat::stl: return {read_stl(bytes, limits), {}, {}};
-    case MeshFormat::gltf: return read_gltf(bytes, limits, nearby, pose);
+    case MeshFormat::gltf: return read_gltf(bytes, limits, nearby, state);
     case MeshFormat::three_mf: return read_three_mf(bytes, limits);
   }
   return {};
 }
 
 // Reads the model in an archive. Adds its path to errors.
-MeshModel read_archived(const ModelArchive& archive, const MeshLimits& limits,
-                        const std::optional<ModelPose>& pose) {
+MeshModel read_archived(const ModelArchive& archive, const MeshLimits& limits, const ModelState& state) {
   const std::string bytes = archive.read_model_file();
   try {
-    return read_model(bytes, limits, archive.nearby(), pose);
+    return read_model(bytes, limits, archive.nearby(), state);
   } catch (const InputError& error) {
     fail_at(excerpt(archive.model_name(), 80), error.problems().front().detail);
   }
@@ -157,13 +156,13 @@ MeshFormat mesh_format(std::string_view bytes) {
 }
 
 MeshModel read_model(std::string_view bytes, const MeshLimits& limits, const ReadNearby& nearby,
-                     const std::optional<ModelPose>& pose) {
-  if (ModelArchive::is_archive(bytes)) return read_archived(ModelArchive(bytes), limits, pose);
+                     const ModelState& state) {
+  if (ModelArchive::is_archive(bytes)) return read_archived(ModelArchive(bytes), limits, state);
   if (is_utf16(bytes) && binary_stl_triangles(bytes) == 0)
-    return read_model(utf8_of_utf16(bytes), limits, nearby, pose);
+    return read_model(utf8_of_utf16(bytes), limits, nearby, state);
   const MeshFormat format = mesh_format(bytes);
   const bool is_text = binary_stl_triangles(bytes) == 0;  // a binary STL may begin with any bytes
-  MeshModel model = read_as(format, is_text ? without_byte_order_mark(bytes) : bytes, limits, nearby, pose);
+  MeshModel model = read_as(format, is_text ? without_byte_order_mark(bytes) : bytes, limits, nearby, state);
   if (model.mesh.triangles.empty())
     throw InputError("", "mesh must have at least 1 triangle (got 0" + joined(model.mesh.notes) + ")");
   finish_normals(model.mesh);

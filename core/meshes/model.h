@@ -47,9 +47,17 @@ struct ModelMaterial {
   std::string name;
   ModelValue<Vec3d> base_color{Vec3d(1)};
   ModelValue<double> metallic{0}, roughness{1};
-  Vec3d normal_reflectance{0.04};  // reflectance of the dielectric
+  // Reflectance of the dielectric. The texture has sRGB codes, unless its alpha is meant.
+  ModelValue<Vec3d> normal_reflectance{Vec3d(0.04)};
+  bool reflectance_in_alpha = false;
   Channel metallic_channel = Channel::blue, roughness_channel = Channel::green;
   ModelValue<Vec3d> emission{Vec3d(0)};
+  // Clear coat over the material: fraction of the surface, in the red channel of the texture.
+  ModelValue<double> coat{0};
+  double coat_roughness = 0;
+  // Reflectance of fibres between the coat and the rest. The texture has sRGB codes.
+  ModelValue<Vec3d> sheen{Vec3d(0)};
+  double sheen_roughness = 0;
   // `factor` multiplies the tangential part of the normal.
   std::optional<ModelValue<double>> normal;
   Alpha alpha = Alpha::opaque;
@@ -89,12 +97,27 @@ struct ModelPose {
   auto operator<=>(const ModelPose&) const = default;
 };
 
+// State in which a model is read. Default: at rest, with the materials that the file states first.
+struct ModelState {
+  std::optional<ModelPose> pose = {};
+  std::string variant = {};  // name of a variant of the materials (KHR_materials_variants, Khronos)
+
+  auto operator<=>(const ModelState&) const = default;
+};
+
+struct ModelAnimation {
+  std::string name;
+  double seconds;  // duration; 0 if the file does not state it
+};
+
 struct MeshModel {
   TriangleMesh mesh;
   std::vector<ModelMaterial> materials;
   std::vector<ModelImage> images;
   std::vector<ModelCamera> cameras = {};
   std::vector<ModelLight> lights = {};
+  std::vector<ModelAnimation> animations = {};
+  std::vector<std::string> variants = {};  // names of the variants of the materials
   std::string unit = {};  // name of the unit of lengths in the file, or empty if the format has none
   MeshFormat format = MeshFormat::obj;  // format of the file, or of the model in an archive
 };
@@ -102,9 +125,9 @@ using MeshModelPtr = std::shared_ptr<const MeshModel>;
 
 // Reads a model file: see read_mesh() for the formats and the mesh. Parts of the mesh refer to `materials`.
 // Reads a ZIP archive as the model in it (core/meshes/model_archive.h), with files from the archive only.
-// With `pose`, a glTF model has the pose of its animation at that time, and other models are rejected.
+// `state` applies to glTF models. Other models with a state are rejected.
 MeshModel read_model(std::string_view bytes, const MeshLimits& limits = {}, const ReadNearby& nearby = {},
-                     const std::optional<ModelPose>& pose = {});
+                     const ModelState& state = {});
 
 // Returns a model of a mesh without materials.
 inline MeshModelPtr model_of(TriangleMesh mesh) {

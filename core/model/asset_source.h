@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -22,15 +23,13 @@ class AssetSource {
  public:
   virtual ~AssetSource() = default;
 
-  // Returns the contents of a file in or below the folder of the scene file. `pose`: see read_model().
-  virtual MeshModelPtr model_file(const std::string& /*name*/,
-                                  const std::optional<ModelPose>& /*pose*/ = {}) const {
+  // Returns the contents of a file in or below the folder of the scene file. `state`: see read_model().
+  virtual MeshModelPtr model_file(const std::string& /*name*/, const ModelState& /*state*/ = {}) const {
     refuse_files();
   }
   virtual TexelsPtr picture_file(const std::string& /*name*/) const { refuse_files(); }
   // Returns an uploaded asset by the SHA-256 of its bytes, in hexadecimal.
-  virtual MeshModelPtr model_asset(const std::string& /*sha256*/,
-                                   const std::optional<ModelPose>& /*pose*/ = {}) const {
+  virtual MeshModelPtr model_asset(const std::string& /*sha256*/, const ModelState& /*state*/ = {}) const {
     refuse_assets();
   }
   virtual TexelsPtr picture_asset(const std::string& /*sha256*/) const { refuse_assets(); }
@@ -51,19 +50,25 @@ class AssetSource {
   }
 };
 
-// Source of one model that was already read, for any name and pose.
+// One model, by the states in which it was read.
+using ModelStates = std::map<ModelState, MeshModelPtr>;
+
+// Source of one model for any name. For states that were not read, it returns the model in the first one.
 class OneModel final : public AssetSource {
  public:
-  explicit OneModel(MeshModelPtr model) : model_(std::move(model)) {}
-  MeshModelPtr model_file(const std::string&, const std::optional<ModelPose>&) const override {
-    return model_;
-  }
-  MeshModelPtr model_asset(const std::string&, const std::optional<ModelPose>&) const override {
-    return model_;
-  }
+  // REQUIRES: there is a state.
+  explicit OneModel(ModelStates states) : states_(std::move(states)) {}
+  explicit OneModel(MeshModelPtr model) : states_{{{}, std::move(model)}} {}
+  MeshModelPtr model_file(const std::string&, const ModelState& state) const override { return in(state); }
+  MeshModelPtr model_asset(const std::string&, const ModelState& state) const override { return in(state); }
 
  private:
-  MeshModelPtr model_;
+  const MeshModelPtr& in(const ModelState& state) const {
+    const auto found = states_.find(state);
+    return found == states_.end() ? states_.begin()->second : found->second;
+  }
+
+  ModelStates states_;
 };
 
 // Source of the meshes of a scene, with running totals, because limits apply to all meshes of a scene

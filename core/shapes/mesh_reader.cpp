@@ -89,10 +89,10 @@ std::string file_name(Params& p, const char* fallback = nullptr) {
 std::string asset_name(Params& p, const char* fallback = nullptr) {
   return p.text("asset", "SHA-256 of an uploaded OBJ, PLY, STL, 3MF or glTF file.", 64, fallback);
 }
-// Triangles of a file, and the pose of its model.
+// Triangles of a file, and the state of its model.
 struct Selection {
   std::optional<int> part;
-  std::optional<ModelPose> pose;
+  ModelState state;
 };
 
 std::optional<int> read_part(Params& p) {
@@ -112,17 +112,26 @@ std::optional<ModelPose> read_pose(Params& p) {
   if (p.has("animation") && !p.has("pose_time")) p.fail("animation", "must not be given without pose_time");
   return p.has("pose_time") ? std::optional(ModelPose{static_cast<int>(animation), time}) : std::nullopt;
 }
-Selection read_selection(Params& p) { return {read_part(p), read_pose(p)}; }
+std::string read_variant(Params& p) {
+  return p.text("variant",
+                "Name of a variant of the materials of a glTF model; default: the materials of the file.",
+                kMostNameLength, "");
+}
+Selection read_selection(Params& p) {
+  const std::optional<int> part = read_part(p);
+  std::optional<ModelPose> pose = read_pose(p);
+  return {part, {std::move(pose), read_variant(p)}};
+}
 
 TriangleMesh read_file(Params& p, const AssetSource& source, const std::string& name,
                        const Selection& selection) {
   return read_elsewhere(p, "file", name, selection.part,
-                        [&](const std::string& n) { return source.model_file(n, selection.pose); });
+                        [&](const std::string& n) { return source.model_file(n, selection.state); });
 }
 TriangleMesh read_asset(Params& p, const AssetSource& source, const std::string& name,
                         const Selection& selection) {
   return read_elsewhere(p, "asset", name, selection.part,
-                        [&](const std::string& n) { return source.model_asset(n, selection.pose); });
+                        [&](const std::string& n) { return source.model_asset(n, selection.state); });
 }
 
 SharedVectors share(std::vector<Vec3d> vectors) {

@@ -49,6 +49,9 @@ class ModelWriter {
       drop_unknown_image(material.metallic.texture);
       drop_unknown_image(material.roughness.texture);
       drop_unknown_image(material.emission.texture);
+      drop_unknown_image(material.normal_reflectance.texture);
+      drop_unknown_image(material.coat.texture);
+      drop_unknown_image(material.sheen.texture);
       if (material.normal) drop_unknown_image(material.normal->texture);
     }
   }
@@ -104,8 +107,10 @@ class ModelWriter {
       json["base_color"] = color_of(from.base_color, colored);
       json["metallic"] = number_of(from.metallic, from.metallic_channel);
       json["roughness"] = number_of(from.roughness, from.roughness_channel);
-      if (!(from.normal_reflectance == Vec3d(0.04)))
-        json["normal_reflectance"] = numbers(from.normal_reflectance);
+      if (from.normal_reflectance.texture || !(from.normal_reflectance.factor == Vec3d(0.04)))
+        json["normal_reflectance"] =
+            color_of(from.normal_reflectance, false, from.reflectance_in_alpha ? "alpha" : "srgb");
+      add_layers(from, json);
       if (!(from.emission.factor == Vec3d(0))) json["emission"] = color_of(from.emission, false);
       if (from.normal && from.normal->texture) {
         json["normal_map"] = {{"texture", texture_name(*from.normal->texture, "linear", false)}};
@@ -133,6 +138,19 @@ class ModelWriter {
             {"ka", 0}};
   }
 
+  void add_layers(const ModelMaterial& from, Json& json) {
+    const bool has_sheen = !(from.sheen.factor == Vec3d(0));
+    if (!(from.coat.factor > 0) && !has_sheen) return;
+    json["type"] = "coated";
+    if (from.coat.factor > 0) {
+      json["coat"] = number_of(from.coat, Channel::red);
+      json["coat_roughness"] = from.coat_roughness;
+    }
+    if (!has_sheen) return;
+    json["sheen_color"] = color_of(from.sheen, false);
+    json["sheen_roughness"] = from.sheen_roughness;
+  }
+
   void add_opacity(const ModelMaterial& from, Json& json) {
     if (from.alpha == ModelMaterial::Alpha::opaque) return;
     if (from.alpha == ModelMaterial::Alpha::mask) json["alpha_cutoff"] = from.cutoff;
@@ -143,9 +161,9 @@ class ModelWriter {
   }
 
   // `colored`: vertex colours multiply the value.
-  Json color_of(const ModelValue<Vec3d>& value, bool colored) {
+  Json color_of(const ModelValue<Vec3d>& value, bool colored, const char* encoding = "srgb") {
     if (!value.texture && !colored) return numbers(value.factor);
-    Json json{{"texture", value.texture ? texture_name(*value.texture, "srgb", colored) : vertex_colors()}};
+    Json json{{"texture", value.texture ? texture_name(*value.texture, encoding, colored) : vertex_colors()}};
     if (!(value.factor == Vec3d(1))) json["tint"] = numbers(value.factor);
     return json;
   }

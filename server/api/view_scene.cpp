@@ -67,9 +67,10 @@ enum Parameter : std::size_t {
   kCamera,
   kLight,
   kPoseTime,
-  kAnimation
+  kAnimation,
+  kVariant
 };
-constexpr std::array<ViewParameter, 9> kParameters{
+constexpr std::array<ViewParameter, 10> kParameters{
     {{"from", "DIRECTION",
       "Direction from the model to the camera: front, right, back, left, top, bottom, iso, or azimuth and "
       "elevation in degrees.",
@@ -81,9 +82,12 @@ constexpr std::array<ViewParameter, 9> kParameters{
       kFits},
      {"camera", "NAME", "Camera of a glTF file, by name or number from 0, instead of a framed view.", ""},
      {"light", "NAME", "Light of a studio, or the lights of a glTF file.", "studio", kLights},
-     {"pose_time", "SECONDS", "Time of the pose in an animation of a glTF model, in seconds; none: at rest.",
+     {"pose_time", "SECONDS",
+      "Time of the pose in an animation of a glTF model, in seconds; none: at rest; all: the scene moves "
+      "through the animation.",
       "none"},
-     {"animation", "NUMBER", "Number of the animation of pose_time, from 0.", "0"}}};
+     {"animation", "NUMBER", "Number of the animation of pose_time, from 0.", "0"},
+     {"variant", "NAME", "Variant of the materials of a glTF file, by name.", ""}}};
 
 ViewDirection read_direction(Params& p) {
   const ViewParameter& row = kParameters[kFrom];
@@ -97,7 +101,9 @@ ViewDirection read_direction(Params& p) {
   return {};
 }
 
-// Returns nullopt for a model at rest.
+constexpr std::string_view kWholeAnimation = "all";  // value of pose_time
+
+// Returns nullopt for a model at rest, and the time 0 for a whole animation.
 std::optional<ModelPose> read_pose(Params& p) {
   const auto text_of = [&](Parameter which) {
     const ViewParameter& row = kParameters[which];
@@ -113,9 +119,10 @@ std::optional<ModelPose> read_pose(Params& p) {
   if (!animation || *animation < 0 || *animation > 1'000'000)
     return fail(kAnimation, "an integer from 0 to 1,000,000", number);
   if (seconds == "none") return std::nullopt;
+  if (seconds == kWholeAnimation) return ModelPose{*animation, 0};
   const auto time = parse_number<double>(seconds);
   if (!time || !(std::abs(*time) <= 1e6))
-    return fail(kPoseTime, "none, or seconds from -1e6 to 1e6", seconds);
+    return fail(kPoseTime, "none, all, or seconds from -1e6 to 1e6", seconds);
   return ModelPose{*animation, *time};
 }
 
@@ -207,11 +214,10 @@ const ModelCamera* camera_of(const MeshModel& model, const ViewOptions& options)
   for (std::size_t i = 0; i < model.cameras.size(); ++i)
     if (model.cameras[i].name == options.camera || std::to_string(i) == options.camera)
       return &model.cameras[i];
-  std::string names;
-  for (const ModelCamera& camera : model.cameras) names += (names.empty() ? "" : ", ") + camera.name;
-  throw InputError(
-      "/camera", "must be a camera of the file: " + (names.empty() ? "it has none" : shortened(names, 200)) +
-                     " (got \"" + shortened(options.camera, 40) + "\")");
+  std::vector<std::string_view> names;
+  for (const ModelCamera& camera : model.cameras) names.push_back(camera.name);
+  throw InputError("/camera", "must be a camera of the file, which has " + shortened_names(names) +
+                                  " (got \"" + shortened(options.camera, 40) + "\")");
 }
 
 // `corners`: of the mesh, near which the camera focuses.
@@ -263,6 +269,36 @@ void add_light(Json& scene, const MeshModel& model, const ViewOptions& options, 
   for (const ModelLight& light : model.lights) scene["lights"].push_back(light_json(light));
 }
 
+// Returns the times of the poses that play an animation of this duration.
+std::vector<double> pose_times(double seconds, std::size_t vertices) {
+  constexpr double kPosesPerSecond = 24, kMaxSeconds = 1e6;
+  constexpr std::size_t kMaxPoses = 241, kMaxVertices = 1'000'000;  // in all
+  if (!(seconds > 0)) return {0};
+  const double last = std::min(seconds, kMaxSeconds);
+  const auto wanted = static_cast<std::size_t>(std::ceil(last * kPosesPerSecond)) + 1;
+  const std::size_t most = std::min(kMaxPoses, kMaxVertices / std::max<std::size_t>(1, vertices));
+  std::vector<double> times(std::max<std::size_t>(2, std::min(wanted, most)));
+  for (std::size_t i = 0; i < times.size(); ++i)
+    times[i] = last * static_cast<double>(i) / static_cast<double>(times.size() - 1);
+  return times;
+}
+
+void add_state(Json& json, const ModelState& state) {
+  if (state.pose) {
+    json["pose_time"] = state.pose->time;
+    json["animation"] = state.pose->animation;
+  }
+  if (!state.variant.empty()) json["variant"] = state.variant;
+}
+
+// Returns the keyframe of a mesh object.
+Json keyframe_of(const Json& object, const ModelState& state, const ModelReference& reference) {
+  Json key{{"time", state.pose->time}, {reference.key, reference.name}};
+  if (object.contains("part")) key["part"] = object["part"];
+  add_state(key, state);
+  return key;
+}
+
 }  // namespace
 
 Vec3d usual_up(MeshFormat format) {
@@ -286,9 +322,13 @@ ViewOptions read_view_options(const Document& document) {
     options.orthographic = choice(kProjection) == 1;
     options.ground = static_cast<ViewOptions::Ground>(choice(kGround));
     options.fit = static_cast<Fit>(choice(kFit));
-    options.camera = p.text(kParameters[kCamera].key, kParameters[kCamera].help, 200, "");
+    const auto name = [&](Parameter which) {
+      return p.text(kParameters[which].key, kParameters[which].help, 200, "");
+    };
+    options.camera = name(kCamera);
     options.file_light = choice(kLight) == 1;
-    options.pose = read_pose(p);
+    options.state = {read_pose(p), name(kVariant)};
+    options.plays = name(kPoseTime) == kWholeAnimation;
   });
   return options;
 }
@@ -302,10 +342,35 @@ ImageSize view_size(const RenderRequest& request) {
   return {request.width.value_or(kSize), request.height.value_or(kSize)};
 }
 
-Json view_scene(const MeshModel& model, const ModelReference& reference, const ViewOptions& options,
+ModelStates read_states(const ViewOptions& options,
+                        const std::function<MeshModelPtr(const ModelState&)>& read) {
+  if (!options.plays) return {{options.state, read(options.state)}};
+  const ModelState rest{.variant = options.state.variant};
+  const MeshModelPtr model = read(rest);
+  const std::vector<ModelAnimation>& animations = model->animations;
+  if (animations.empty()) return {{rest, model}};
+  const auto number = static_cast<std::size_t>(options.state.pose->animation);
+  if (number >= animations.size())
+    throw InputError("/animation", "must be from 0 to " + std::to_string(animations.size() - 1) + " (got " +
+                                       std::to_string(number) + ")");
+  ModelStates states;
+  for (const double time : pose_times(animations[number].seconds, model->mesh.positions.size())) {
+    const ModelState state{ModelPose{static_cast<int>(number), time}, rest.variant};
+    states[state] = read(state);
+  }
+  return states;
+}
+
+Json view_scene(const ModelStates& states, const ModelReference& reference, const ViewOptions& options,
                 int width, int height) {
+  const auto& [state, first] = *states.begin();
+  const MeshModel& model = *first;
   const StudioAxes axes = StudioAxes::with_up(options.up.value_or(usual_up(model.format)));
-  const std::vector<Vec3d> corners = corners_of(model.mesh);
+  std::vector<Vec3d> corners;
+  for (const auto& [_, posed] : states) {
+    const std::vector<Vec3d> own = corners_of(posed->mesh);
+    corners.insert(corners.end(), own.begin(), own.end());
+  }
   const Framing framing = frame_points(corners, {.axes = axes,
                                                  .from = options.from,
                                                  .aspect = static_cast<double>(width) / height,
@@ -319,11 +384,12 @@ Json view_scene(const MeshModel& model, const ModelReference& reference, const V
   add_light(scene, model, options, axes);
   add_model(scene, model, reference, {{"type", "lambert"}, {"reflectance", kModelReflectance}},
             kCreaseDegrees);
-  if (options.pose)
-    for (Json& object : scene["objects"]) {
-      object["pose_time"] = options.pose->time;
-      object["animation"] = options.pose->animation;
-    }
+  for (Json& object : scene["objects"]) {
+    if (states.size() > 1)
+      for (const auto& [moment, _] : states)
+        object["motion"].push_back(keyframe_of(object, moment, reference));
+    add_state(object, state);
+  }
   add_ground(scene, options, axes, corners, camera ? camera->eye : framing.eye);
   // In the open, sharing paths costs more than it gains.
   scene["render"] = {{"technique", "path"}, {"max_depth", 4}, {"path_reuse", 1}};

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/framing/framing.h"
+#include "core/model/asset_source.h"
 #include "core/params/document.h"
 #include "core/plan/request.h"
 #include "server/api/model_materials.h"
@@ -22,9 +23,10 @@ struct ViewOptions {
   bool orthographic = false;
   Ground ground = Ground::none;
   Fit fit = Fit::view;
-  std::string camera;             // name or number of a camera of the file; empty: framed exactly
-  bool file_light = false;        // lights of the file, otherwise those of a studio
-  std::optional<ModelPose> pose;  // default: at rest
+  std::string camera;       // name or number of a camera of the file; empty: framed exactly
+  bool file_light = false;  // lights of the file, otherwise those of a studio
+  ModelState state = {};
+  bool plays = false;  // the scene moves through the animation `state.pose` of the model, if it has any
 };
 
 // Option of a view: query parameter and flag.
@@ -51,11 +53,18 @@ ImageSize view_size(const RenderRequest& request);
 // Direction that is up in files of this format, unless their makers agreed otherwise.
 Vec3d usual_up(MeshFormat format);
 
-// Returns a scene with the model, a camera that frames it exactly in an image of this size, uniform light
-// from all directions and a soft key light from the upper left of the camera. Meshes without normals are
-// smooth across edges of less than 30 degrees. Models without materials are grey. REQUIRES: the mesh has
-// triangles. Throws InputError (pointer "/camera" or "/light") if the model lacks what the options name.
-nlohmann::ordered_json view_scene(const MeshModel& model, const ModelReference& reference,
+// Reads the model of a view by read(state). If the view plays an animation, reads the poses of its keyframes:
+// up to 24 per second, and few enough for a million vertices in all. Otherwise reads one state. Throws
+// InputError (pointer "/animation") if the model has other animations, but not the one that the options name.
+ModelStates read_states(const ViewOptions& options,
+                        const std::function<MeshModelPtr(const ModelState&)>& read);
+
+// Returns a scene with the model in the first state, a camera that frames it exactly in an image of this
+// size, uniform light from all directions and a soft key light from the upper left of the camera. Meshes
+// without normals are smooth across edges of less than 30 degrees. Models without materials are grey. Further
+// states are keyframes of motion, and the camera frames all of them. REQUIRES: the mesh has triangles. Throws
+// InputError (pointer "/camera" or "/light") if the model lacks what the options name.
+nlohmann::ordered_json view_scene(const ModelStates& states, const ModelReference& reference,
                                   const ViewOptions& options, int width, int height);
 
 }  // namespace orrery

@@ -12,9 +12,9 @@ AssetReader::AssetReader(const AssetSource& assets, Admission& admission, std::s
   if (bytes > kSmall) take_turn();
 }
 
-MeshModelPtr AssetReader::model_asset(const std::string& sha256, const std::optional<ModelPose>& pose) const {
+MeshModelPtr AssetReader::model_asset(const std::string& sha256, const ModelState& state) const {
   if (!ticket_) take_turn();
-  return assets_.model_asset(sha256, pose);
+  return assets_.model_asset(sha256, state);
 }
 
 TexelsPtr AssetReader::picture_asset(const std::string& sha256) const {

@@ -18,7 +18,7 @@ class AssetReader final : public AssetSource {
   AssetReader(const AssetSource& assets, Admission& admission, std::string client, std::size_t bytes,
               std::stop_token stop);
 
-  MeshModelPtr model_asset(const std::string& sha256, const std::optional<ModelPose>& pose) const override;
+  MeshModelPtr model_asset(const std::string& sha256, const ModelState& state) const override;
   TexelsPtr picture_asset(const std::string& sha256) const override;
 
   double waited_ms() const { return waited_ms_; }

@@ -116,8 +116,8 @@ AssetStore::AssetPtr AssetStore::find_for_scene(const std::string& sha256) const
   return *found;
 }
 
-MeshModelPtr AssetStore::model_asset(const std::string& sha256, const std::optional<ModelPose>& pose) const {
-  return std::make_shared<const MeshModel>(read_model(find_for_scene(sha256)->bytes, {}, {}, pose));
+MeshModelPtr AssetStore::model_asset(const std::string& sha256, const ModelState& state) const {
+  return std::make_shared<const MeshModel>(read_model(find_for_scene(sha256)->bytes, {}, {}, state));
 }
 
 TexelsPtr AssetStore::picture_asset(const std::string& sha256) const {

@@ -53,7 +53,7 @@ class AssetStore final : public AssetSource {
   std::size_t bytes() const { return assets_.bytes(); }
   std::uint64_t evictions() const { return assets_.evictions(); }
 
-  MeshModelPtr model_asset(const std::string& sha256, const std::optional<ModelPose>& pose) const override;
+  MeshModelPtr model_asset(const std::string& sha256, const ModelState& state) const override;
   TexelsPtr picture_asset(const std::string& sha256) const override;
 
  private:

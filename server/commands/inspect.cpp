@@ -37,6 +37,13 @@ nlohmann::ordered_json material_names(const MeshModel& model) {
   return names;
 }
 
+nlohmann::ordered_json animations_json(const MeshModel& model) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const ModelAnimation& animation : model.animations)
+    list.push_back({{"name", animation.name}, {"seconds", animation.seconds}});
+  return list;
+}
+
 nlohmann::ordered_json inspection_json(const ModelFile& model, const MeshInspection& found) {
   return {{"format", name_of(model.model->format)},
           {"bytes", model.bytes},
@@ -57,6 +64,8 @@ nlohmann::ordered_json inspection_json(const ModelFile& model, const MeshInspect
           {"images", model.model->images.size()},
           {"cameras", model.model->cameras.size()},
           {"lights", model.model->lights.size()},
+          {"animations", animations_json(*model.model)},
+          {"variants", model.model->variants},
           {"notes", notes_of(*model.model)}};
 }
 
@@ -83,6 +92,10 @@ std::string inspection_text(const ModelFile& model, const MeshInspection& found)
                               (mesh.colors.empty() ? "" : ", with colours"));
   if (const std::size_t count = model.model->materials.size(); count > 0)
     text += row("materials", grouped(count) + ", with " + grouped(model.model->images.size()) + " images");
+  for (const ModelAnimation& animation : model.model->animations)
+    text += row("animation", shortened(animation.name) + ", " + number_text(animation.seconds) + " s");
+  if (const auto& variants = model.model->variants; !variants.empty())
+    text += row("variants", shortened_names(variants));
   text += row("size", number_text(size.x) + " x " + number_text(size.y) + " x " + number_text(size.z) +
                           (model.model->unit.empty() ? "" : " " + model.model->unit));
   text += row("box", text_of(found.bounds.lo) + " to " + text_of(found.bounds.hi));

@@ -25,6 +25,7 @@ Examples:
   orrery view chair.glb -o chair.png --from front --width 1024 --height 1024
   orrery view part.stl -o - --ground shadow > part.png
   orrery view robot.glb -o robot.png --pose-time 1.5 --animation 2
+  orrery view robot.glb --pose-time all --print-scene -o robot.json
   orrery view part.stl --print-scene -o part.json    # the scene, as JSON
 
 Renders an OBJ, PLY, STL, 3MF or glTF file without a scene: frames the model
@@ -45,14 +46,16 @@ struct View {
   nlohmann::ordered_json scene;
 };
 
-// Returns make(). Errors name flags instead of keys.
+// Returns make(). Errors of options name flags instead of keys.
 template <class Make>
 auto naming_flags(const Make& make) {
   try {
     return make();
   } catch (const InputError& error) {
     std::vector<Problem> problems = error.problems();
-    for (Problem& problem : problems) problem.pointer = flag_of(problem.pointer.substr(1));
+    for (Problem& problem : problems)
+      for (const ViewParameter& parameter : view_parameters())
+        if (problem.pointer == "/" + std::string(parameter.key)) problem.pointer = flag_of(parameter.key);
     throw InputError(std::move(problems));
   }
 }
@@ -81,16 +84,16 @@ void set_default(CLI::App& app, const char* flag, double fallback) {
 View view_of(const ViewFlags& flags, const RenderRequest& request) {
   const ViewOptions options = options_of(flags);
   const std::string& path = flags.render.render.scene;
-  ModelFile file = read_model_file(path, options.pose);
-  View view{OneModel(file.model), {}};
-  for (const std::string& note : notes_of(*file.model))
+  const ModelStates states = naming_flags([&] {
+    return read_states(options, [&](const ModelState& state) { return read_model_file(path, state).model; });
+  });
+  for (const std::string& note : notes_of(*states.begin()->second))
     std::cerr << "orrery: warning: " << path << ": " << note << "\n";
   const std::string name = path == "-" ? "model" : std::filesystem::path(path).filename().string();
   const auto [width, height] = view_size(request);
-  view.scene = naming_flags([&] {
-    return view_scene(*file.model, {"file", name, name}, options, width, height);
-  });
-  return view;
+  return {OneModel(states), naming_flags([&] {
+            return view_scene(states, {"file", name, name}, options, width, height);
+          })};
 }
 
 int view(const ViewFlags& flags) {

@@ -41,9 +41,10 @@ RenderOrder make_view_order(App& app, const Caller& caller, ViewQuery query, con
   SceneStore::Prepared scene;
   app.read_assets(caller, trace, [&](const AssetSource& assets) {
     const auto [width, height] = view_size(query.request);
-    const MeshModelPtr model = assets.model_asset(id, query.options.pose);
-    const nlohmann::json json = view_scene(*model, {"asset", id, "Model"}, query.options, width, height);
-    scene = app.scenes().get(document_of(json), OneModel(model), caller.client);
+    const ModelStates states =
+        read_states(query.options, [&](const ModelState& state) { return assets.model_asset(id, state); });
+    const nlohmann::json json = view_scene(states, {"asset", id, "Model"}, query.options, width, height);
+    scene = app.scenes().get(document_of(json), OneModel(states), caller.client);
   });
   return make_order(std::move(scene), std::move(query.request), FileFormat::png, caller);
 }

@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const MeshLimits limits{100'000, 100'000};
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   try {
-    test::check_model(read_model(bytes, limits, {}, ModelPose{0, 0.5}), limits);
+    test::check_model(read_model(bytes, limits, {}, {.pose = ModelPose{0, 0.5}}), limits);
   } catch (const InputError&) {  // most files have no animation
   }
   try {

@@ -18,11 +18,11 @@ TriangleMesh roof() {
 
 class Shelf final : public AssetSource {
  public:
-  MeshModelPtr model_file(const std::string& name, const std::optional<ModelPose>&) const override {
+  MeshModelPtr model_file(const std::string& name, const ModelState&) const override {
     if (name != "roof.obj") throw InputError("", "cannot read " + name);
     return model_of(roof());
   }
-  MeshModelPtr model_asset(const std::string& sha256, const std::optional<ModelPose>&) const override {
+  MeshModelPtr model_asset(const std::string& sha256, const ModelState&) const override {
     if (sha256 == "far") {
       TriangleMesh mesh = roof();
       mesh.positions[3].x = 1e13;
@@ -102,23 +102,25 @@ TEST(AssetFiles, SmoothsEdgesBelowCreaseAngle) {
   EXPECT_LT(std::abs(smooth.x), 0.35);
 }
 
-// Each pose of a model is read once, also as a keyframe.
-TEST(AssetFiles, AsksForPoses) {
-  class Poses final : public AssetSource {
+// Each state of a model is read once, also as a keyframe.
+TEST(AssetFiles, AsksForStates) {
+  class States final : public AssetSource {
    public:
-    MeshModelPtr model_file(const std::string&, const std::optional<ModelPose>& pose) const override {
-      asked.push_back(pose);
+    MeshModelPtr model_file(const std::string&, const ModelState& state) const override {
+      asked.push_back(state);
       return model_of(roof());
     }
-    mutable std::vector<std::optional<ModelPose>> asked;
+    mutable std::vector<ModelState> asked;
   };
-  const Poses shelf;
+  const States shelf;
   load_scene(text_of("[{'type': 'mesh', 'file': 'a', 'motion': [{'time': 0}, {'time': 1, 'file': 'a', "
                      "'pose_time': 2}]}, {'type': 'mesh', 'file': 'a', 'pose_time': -1.5, 'animation': 3},"
-                     " {'type': 'mesh', 'file': 'a', 'pose_time': 2}]"),
+                     " {'type': 'mesh', 'file': 'a', 'pose_time': 2}, {'type': 'mesh', 'file': 'a', "
+                     "'variant': 'red'}, {'type': 'mesh', 'file': 'a', 'variant': 'red'}]"),
              shelf);
   EXPECT_EQ(shelf.asked,
-            (std::vector<std::optional<ModelPose>>{std::nullopt, ModelPose{0, 2}, ModelPose{3, -1.5}}));
+            (std::vector<ModelState>{
+                {}, {.pose = ModelPose{0, 2}}, {.pose = ModelPose{3, -1.5}}, {.variant = "red"}}));
   const Problem alone = problem_of("[{'type': 'mesh', 'file': 'roof.obj', 'animation': 1}]", Shelf());
   EXPECT_EQ(alone.pointer, "/objects/0/animation");
   EXPECT_EQ(alone.detail, "must not be given without pose_time");
@@ -128,7 +130,7 @@ TEST(AssetFiles, AsksForPoses) {
 TEST(AssetFiles, ReadsEachFileOncePerLoad) {
   class Counting final : public AssetSource {
    public:
-    MeshModelPtr model_file(const std::string&, const std::optional<ModelPose>&) const override {
+    MeshModelPtr model_file(const std::string&, const ModelState&) const override {
       ++reads;
       return model_of(roof());
     }
@@ -144,7 +146,7 @@ TEST(AssetFiles, ReadsEachFileOncePerLoad) {
 TEST(AssetFiles, RejectsTotalVerticesAboveLimit) {
   class Dots final : public AssetSource {
    public:
-    MeshModelPtr model_file(const std::string&, const std::optional<ModelPose>&) const override {
+    MeshModelPtr model_file(const std::string&, const ModelState&) const override {
       TriangleMesh mesh = roof();
       mesh.positions.resize(4'000'000);
       return model_of(mesh);

@@ -61,7 +61,7 @@ TEST(LoadMotion, RejectsInvalidKeyframes) {
 
 class Stages final : public AssetSource {
  public:
-  MeshModelPtr model_file(const std::string& name, const std::optional<ModelPose>&) const override {
+  MeshModelPtr model_file(const std::string& name, const ModelState&) const override {
     TriangleMesh mesh;
     mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, name == "a.obj" ? 0.0 : 2.0}};
     mesh.triangles = {{0, 1, 2}};
@@ -97,7 +97,7 @@ TEST(LoadMotion, RejectsKeyframeFilesOfOtherTopology) {
 class LargeMeshSource final : public AssetSource {
  public:
   mutable int read = 0;
-  MeshModelPtr model_file(const std::string&, const std::optional<ModelPose>&) const override {
+  MeshModelPtr model_file(const std::string&, const ModelState&) const override {
     ++read;
     TriangleMesh mesh;
     mesh.positions.resize(100'000, Vec3d(1, 2, 3));

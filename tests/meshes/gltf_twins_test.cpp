@@ -14,7 +14,7 @@ namespace {
 TriangleMesh tube(const char* name, const std::optional<ModelPose>& pose) {
   std::ifstream file(std::string("tests/fuzz/corpus/mesh_file/") + name, std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(file)), {});
-  return read_model(bytes, {}, {}, pose).mesh;
+  return read_model(bytes, {}, {}, {.pose = pose}).mesh;
 }
 
 double area_of(const TriangleMesh& mesh) {

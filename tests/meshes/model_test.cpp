@@ -116,6 +116,36 @@ TEST(Model, NotesMissingImages) {
   EXPECT_THAT(model.mesh.notes[0], HasSubstr("an image is missing: /images/0/uri"));
 }
 
+// Three primitives: two list the variants 0 and 2, and 1. The last lists none.
+TEST(Model, ReadsVariantsOfMaterials) {
+  Gltf gltf;
+  gltf.positions(kOneTriangle);
+  const std::string glb = gltf.glb(
+      R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[
+{"attributes":{"POSITION":0},"material":0,"extensions":{"KHR_materials_variants":{"mappings":[
+{"material":1,"variants":[0,2]},{"material":2,"variants":[1]}]}}},
+{"attributes":{"POSITION":0},"extensions":{"KHR_materials_variants":{"mappings":[{"material":3,"variants":[1]}]}}},
+{"attributes":{"POSITION":0},"material":0}]}],"materials":[{},{},{},{}],
+"extensionsUsed":["KHR_materials_variants"],"extensionsRequired":["KHR_materials_variants"],
+"extensions":{"KHR_materials_variants":{"variants":[{"name":"day"},{"name":"dusk"},{"name":"night"}]}})");
+  const auto materials = [&](const char* variant) {
+    std::vector<int> numbers;
+    for (const MeshPart& part : read_model(glb, {}, {}, {.variant = variant}).mesh.parts)
+      numbers.push_back(part.material);
+    return numbers;
+  };
+  EXPECT_THAT(materials(""), ElementsAre(0, -1, 0));
+  EXPECT_THAT(materials("day"), ElementsAre(1, -1, 0));
+  EXPECT_THAT(materials("dusk"), ElementsAre(2, 3, 0));
+  EXPECT_THAT(materials("night"), ElementsAre(1, -1, 0));
+  EXPECT_THAT(read_model(glb).variants, ElementsAre("day", "dusk", "night"));
+  EXPECT_TRUE(read_model(glb).mesh.notes.empty());
+  EXPECT_THAT(error_of([&] { materials("noon"); }),
+              HasSubstr("variant must be one of the file, which has day, dusk, night (got \"noon\")"));
+  EXPECT_THAT(error_of([] { read_model("v 0 0 0", {}, {}, {.variant = "day"}); }),
+              HasSubstr("must be a glTF file to have a pose at a time or a variant (got obj)"));
+}
+
 TEST(Model, RejectsMaterialsThatDoNotExist) {
   EXPECT_THROW(three_parts(R"(,"materials":[{}])"), InputError);
   EXPECT_THROW(three_parts(""), InputError);

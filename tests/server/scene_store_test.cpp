@@ -35,7 +35,7 @@ Document balls(const std::string& title, int count) {
 // Asset source that returns one triangle and counts the reads.
 class CountedMeshes final : public AssetSource {
  public:
-  MeshModelPtr model_asset(const std::string&, const std::optional<ModelPose>&) const override {
+  MeshModelPtr model_asset(const std::string&, const ModelState&) const override {
     ++reads;
     return model_of(
         {.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, .triangles = {{0, 1, 2}}, .normals = {}, .uvs = {}});

@@ -35,7 +35,7 @@ TEST(TaskMemory, StopsSmoothingDuringFacetPass) {
 // Asset source that returns a mesh of 100,000 vertices for every name.
 class LargeMesh final : public AssetSource {
  public:
-  MeshModelPtr model_file(const std::string&, const std::optional<ModelPose>&) const override {
+  MeshModelPtr model_file(const std::string&, const ModelState&) const override {
     TriangleMesh mesh;
     mesh.positions.resize(100'000, Vec3d(1, 2, 3));
     mesh.triangles = {{0, 1, 2}};

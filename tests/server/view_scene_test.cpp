@@ -62,12 +62,18 @@ MeshModel card_model(const Card& card, double repeats, const std::string& materi
       rest));
 }
 
+// Returns the scene of a view of the model at rest.
+nlohmann::ordered_json scene_of(const MeshModel& model, const ViewOptions& options = {}, int side = 64) {
+  return view_scene({{{}, std::make_shared<const MeshModel>(model)}}, {"file", "model", "Model"}, options,
+                    side, side);
+}
+
 // Renders the front of a model without perspective, one sample at the centre of each pixel. The margin is a
 // 20th of the image on each side.
 test::Picture front_of(const MeshModel& model, int side) {
   ViewOptions options;
   options.orthographic = true;
-  const nlohmann::ordered_json scene = view_scene(model, {"file", "model", "Model"}, options, side, side);
+  const nlohmann::ordered_json scene = scene_of(model, options, side);
   RenderRequest request = test::in_double(test::size(side, side));
   request.technique = "raycast";
   request.samples = 1;
@@ -135,10 +141,10 @@ TEST(ViewScene, UsesCamerasAndLightsOfTheFile) {
   EXPECT_TRUE(model.cameras.empty());  // no node has a camera
   ViewOptions options;
   options.camera = "near";
-  EXPECT_THROW(view_scene(model, {"file", "model", "Model"}, options, 64, 64), InputError);
+  EXPECT_THROW(scene_of(model, options), InputError);
   options.camera.clear();
   options.file_light = true;
-  EXPECT_THROW(view_scene(model, {"file", "model", "Model"}, options, 64, 64), InputError);
+  EXPECT_THROW(scene_of(model, options), InputError);
 
   MeshModel with_both = model;
   with_both.cameras = {{"near", {0, 0, 4}, {0, 0, -1}, {0, 1, 0}, 30, 0},
@@ -147,7 +153,7 @@ TEST(ViewScene, UsesCamerasAndLightsOfTheFile) {
   with_both.lights = {light};
   for (const char* camera : {"near", "1"}) {
     options.camera = camera;
-    const auto scene = view_scene(with_both, {"file", "model", "Model"}, options, 64, 64);
+    const auto scene = scene_of(with_both, options);
     EXPECT_EQ(scene["camera"]["type"], camera[0] == 'n' ? "perspective" : "orthographic");
     EXPECT_EQ(scene["camera"]["look_at"], (nlohmann::ordered_json{0.0, 0.0, 0.0}));
     EXPECT_EQ(scene["lights"].size(), 1);
@@ -162,17 +168,75 @@ TEST(ViewScene, OmitsGroundAboveTheCameraOfTheFile) {
   options.camera = "0";
   const auto objects_from = [&](double height) {
     model.cameras = {{"0", {0, height, 4}, {0, 0, -1}, {0, 1, 0}, 30, 0}};
-    return view_scene(model, {"file", "model", "Model"}, options, 64, 64)["objects"].size();
+    return scene_of(model, options)["objects"].size();
   };
   EXPECT_EQ(objects_from(3), 2);
   EXPECT_EQ(objects_from(-3), 1);
+}
+
+// A square of side 1 that moves by 4 along x within 2 s. The view frames all places: from -0.5 to 4.5, in a
+// square image with a margin of 5 %.
+TEST(ViewScene, PlaysAnimations) {
+  test::Gltf gltf;
+  gltf.positions({{-0.5, -0.5, 0}, {0.5, -0.5, 0}, {0.5, 0.5, 0}, {-0.5, 0.5, 0}});
+  gltf.add<std::uint16_t>({0, 1, 2, 0, 2, 3}, "SCALAR", 5123);
+  gltf.add<float>({0, 2}, "SCALAR", 5126);
+  gltf.add<float>({0, 0, 0, 4, 0, 0}, "VEC3", 5126);
+  const std::string glb = test::replaced(
+      gltf.glb(
+          R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],)"
+          R"("animations":[{"name":"slide","samplers":[{"input":2,"output":3}],)"
+          R"("channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}]}])"),
+      R"("count":2,"type":"SCALAR"})", R"("count":2,"type":"SCALAR","max":[2]})");
+  const auto read = [&](const ModelState& state) {
+    return std::make_shared<const MeshModel>(read_model(glb, {}, {}, state));
+  };
+  ViewOptions options;
+  options.orthographic = options.plays = true;
+  options.state.pose = ModelPose{0, 0};
+  const ModelStates states = read_states(options, read);
+  EXPECT_EQ(states.size(), 49);  // 24 per second
+  const auto scene = view_scene(states, {"file", "model", "Model"}, options, 200, 200);
+  ASSERT_EQ(scene["objects"][0]["motion"].size(), 49);
+  EXPECT_EQ(scene["objects"][0]["motion"][48]["pose_time"], 2.0);
+  const auto loaded = load_scene(document_of(scene), OneModel(states));
+  for (const double time : {0.0, 0.51, 2.0}) {
+    RenderRequest request = test::in_double(test::size(200, 200));
+    request.technique = "raycast";
+    request.samples = 1;
+    request.time = time;
+    const test::Picture picture = test::render(loaded, request);
+    int first = 200, last = -1;
+    for (int x = 0; x < 200; ++x)
+      if (picture.at(x, 100) != picture.at(100, 2)) {
+        first = std::min(first, x);
+        last = std::max(last, x);
+      }
+    EXPECT_NEAR(first, 10 + 180 * (2 * time) / 5, 1) << time;
+    EXPECT_NEAR(last + 1, 10 + 180 * (2 * time + 1) / 5, 1) << time;
+  }
+  options.state.pose->animation = 1;
+  EXPECT_THROW(read_states(options, read), InputError);
+}
+
+TEST(ViewScene, PlaysNothingWithoutAnimations) {
+  ViewOptions options;
+  options.plays = true;
+  options.state.pose = ModelPose{0, 0};
+  const auto read = [](const ModelState& state) {
+    EXPECT_EQ(state, ModelState());
+    return std::make_shared<const MeshModel>(card_model(Card(2), 1, R"("name":"m")"));
+  };
+  const auto scene = view_scene(read_states(options, read), {"file", "model", "Model"}, options, 64, 64);
+  EXPECT_FALSE(scene["objects"][0].contains("motion"));
+  EXPECT_FALSE(scene["objects"][0].contains("pose_time"));
 }
 
 TEST(ViewScene, MakesGlassOfTransmittingVolumes) {
   const Card card(2);
   const auto material_of = [&](const std::string& extensions) {
     const MeshModel model = card_model(card, 1, R"("extensions":{)" + extensions + "}");
-    return view_scene(model, {"file", "model", "Model"}, {}, 64, 64)["materials"]["material"];
+    return scene_of(model)["materials"]["material"];
   };
   const auto glass = material_of(
       R"("KHR_materials_transmission":{"transmissionFactor":1},"KHR_materials_ior":{"ior":1.33},)"
@@ -184,6 +248,30 @@ TEST(ViewScene, MakesGlassOfTransmittingVolumes) {
   const auto pane = material_of(R"("KHR_materials_transmission":{"transmissionFactor":0.75})");
   EXPECT_EQ(pane["type"], "transparent");
   EXPECT_EQ(pane["kt"], 0.75);
+}
+
+TEST(ViewScene, CoatsMaterials) {
+  const MeshModel model = card_model(
+      Card(2), 1,
+      R"("extensions":{"KHR_materials_clearcoat":{"clearcoatFactor":0.75,"clearcoatRoughnessFactor":0.25,)"
+      R"("clearcoatTexture":{"index":0},"clearcoatNormalTexture":{"index":0}},)"
+      R"("KHR_materials_sheen":{"sheenColorFactor":[1,0.5,0.25],"sheenColorTexture":{"index":0},)"
+      R"("sheenRoughnessFactor":0.5},"KHR_materials_specular":{"specularFactor":0.5,)"
+      R"("specularTexture":{"index":0}}})");
+  const auto scene = scene_of(model);
+  const auto& json = scene["materials"]["material"];
+  EXPECT_EQ(json["type"], "coated");
+  EXPECT_EQ(json["coat"]["channel"], "red");
+  EXPECT_EQ(json["coat"]["scale"], 0.75);
+  EXPECT_EQ(json["coat_roughness"], 0.25);
+  EXPECT_EQ(json["sheen_color"]["tint"], (nlohmann::ordered_json{1.0, 0.5, 0.25}));
+  EXPECT_EQ(json["sheen_roughness"], 0.5);
+  const std::string shine = json["normal_reflectance"]["texture"], cloth = json["sheen_color"]["texture"];
+  EXPECT_EQ(scene["textures"][shine]["encoding"], "alpha");
+  EXPECT_EQ(scene["textures"][cloth]["encoding"], "srgb");
+  EXPECT_EQ(json["normal_reflectance"]["tint"][0], 0.02);
+  EXPECT_EQ(notes_of(model),
+            (std::vector<std::string>{"1 textures of KHR_materials_clearcoat are not modelled"}));
 }
 
 // Returns a model of `count` triangles, each with a material of its own, without names.
@@ -205,7 +293,7 @@ MeshModel model_of_materials(int count) {
 TEST(ViewScene, NamesManyMaterials) {
   constexpr int kCount = 40'000;
   const auto start = std::chrono::steady_clock::now();
-  const auto scene = view_scene(model_of_materials(kCount), {"file", "model", "Model"}, {}, 64, 64);
+  const auto scene = scene_of(model_of_materials(kCount));
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
   ASSERT_EQ(scene["materials"].size(), kCount);
   EXPECT_EQ(scene["objects"][0]["material"], "material");
@@ -221,7 +309,7 @@ TEST(ViewScene, RejectsModelsOfTooManyTextures) {
     texture.shift = {static_cast<double>(i), 0};
     model.materials[i].base_color.texture = texture;
   }
-  const auto view = [&] { return view_scene(model, {"file", "model", "Model"}, {}, 64, 64); };
+  const auto view = [&] { return scene_of(model); };
   try {
     view();
     FAIL() << "257 textures were accepted";
@@ -241,7 +329,7 @@ TEST(ViewScene, LeavesOutImagesOfUnknownFormats) {
   material.base_color = {Vec3d(0.25), ModelTexture{.image = 1}};
   material.emission = {Vec3d(1), ModelTexture{.image = 0}};
   material.normal = {1, ModelTexture{.image = 1}};
-  const auto scene = view_scene(model, {"file", "model", "Model"}, {}, 64, 64);
+  const auto scene = scene_of(model);
   const auto& json = scene["materials"]["material"];
   EXPECT_EQ(json["base_color"], (nlohmann::ordered_json{0.25, 0.25, 0.25}));
   EXPECT_TRUE(json["emission"].contains("texture"));
