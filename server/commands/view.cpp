@@ -53,9 +53,14 @@ auto naming_flags(const Make& make) {
     return make();
   } catch (const InputError& error) {
     std::vector<Problem> problems = error.problems();
+    bool is_option = false;
     for (Problem& problem : problems)
       for (const ViewParameter& parameter : view_parameters())
-        if (problem.pointer == "/" + std::string(parameter.key)) problem.pointer = flag_of(parameter.key);
+        if (problem.pointer == "/" + std::string(parameter.key)) {
+          problem.pointer = flag_of(parameter.key);
+          is_option = true;
+        }
+    if (!is_option) throw;  // of the file
     throw InputError(std::move(problems));
   }
 }

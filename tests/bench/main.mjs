@@ -11,6 +11,7 @@ import { DRAG } from "./drag.mjs";
 import { EMBREE } from "./embree.mjs";
 import { FLAKE_VS_POVRAY } from "./flake_vs_povray.mjs";
 import { measure } from "./measure.mjs";
+import { MODELS } from "./models.mjs";
 import { MOTION } from "./motion.mjs";
 import { NOISE } from "./noise.mjs";
 import { ORBIT_HTTP } from "./orbit_http.mjs";
@@ -27,7 +28,7 @@ import { REPORTS as STRUCTURE_REPORTS } from "./structures.mjs";
 //   reach, aim: required and desired ratio (null: none)
 //   needs: required programs
 //   start() -> {ours(), theirs(), stop(), remark}. One call of ours() or theirs() is one run: {cost, cpuS}.
-const BENCHMARKS = [NOISE, PAPER_VS_POVRAY, FLAKE_VS_POVRAY, ORBIT_HTTP, ...STAGES, ...MOTION, ...SCAN_LINE];
+const BENCHMARKS = [NOISE, PAPER_VS_POVRAY, FLAKE_VS_POVRAY, ORBIT_HTTP, ...STAGES, ...MOTION, ...SCAN_LINE, ...MODELS];
 
 const REPORTS = [EMBREE, CYCLES, CYCLES_THRESHOLD, BUDGETS, ...STRUCTURE_REPORTS, CANCEL, DRAG, SLOW_CLIENTS];
 const ALL = [...BENCHMARKS, ...REPORTS];

@@ -14,7 +14,15 @@ if (models.length === 0) {
   process.exit(2);
 }
 await compareSideBySide(sheet, models, (model, { camera, lights, environment }, file) => {
-  const order = JSON.stringify({ model, camera, light: lights[0], radiance: environment.radiance, side: kSide, file });
+  const order = JSON.stringify({
+    model,
+    camera,
+    light: lights[0],
+    radiance: environment.radiance,
+    samples: 128,
+    side: kSide,
+    file,
+  });
   execFileSync("blender", ["-b", "--factory-startup", "-P", "tests/meshes/cycles_view.py", "--", order], {
     stdio: ["ignore", "ignore", "inherit"],
   });

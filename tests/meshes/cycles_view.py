@@ -1,6 +1,6 @@
 # Renders a glTF model with Blender's Cycles: `blender -b --factory-startup -P FILE -- ORDER`. ORDER is a JSON
-# object with model, camera, light and radiance as in a scene of `orrery view`, side in pixels, and file, a
-# PNG file to write. Blender turns models from y up to z up: (x, y, z) becomes (x, -z, y).
+# object with model, camera, light and radiance as in a scene of `orrery view`, samples per pixel, side in
+# pixels, and file, a PNG file to write. Blender turns models from y up to z up: (x, y, z) becomes (x, -z, y).
 
 import json
 import math
@@ -8,6 +8,9 @@ import sys
 
 import bpy
 import mathutils
+import numpy
+
+numpy.bool = bool  # an alias that numpy 1.24 removed and that the importer of Blender 3.4 uses
 
 order = json.loads(sys.argv[sys.argv.index("--") + 1])
 
@@ -59,7 +62,7 @@ world.node_tree.nodes["Background"].inputs["Strength"].default_value = 1
 scene.world = world
 
 scene.render.engine = "CYCLES"
-scene.cycles.samples = 128
+scene.cycles.samples = order["samples"]
 scene.cycles.use_adaptive_sampling = False
 scene.cycles.use_denoising = False
 scene.cycles.max_bounces = 4

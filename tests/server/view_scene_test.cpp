@@ -257,7 +257,8 @@ TEST(ViewScene, CoatsMaterials) {
       R"("clearcoatTexture":{"index":0},"clearcoatNormalTexture":{"index":0}},)"
       R"("KHR_materials_sheen":{"sheenColorFactor":[1,0.5,0.25],"sheenColorTexture":{"index":0},)"
       R"("sheenRoughnessFactor":0.5},"KHR_materials_specular":{"specularFactor":0.5,)"
-      R"("specularTexture":{"index":0}}})");
+      R"("specularTexture":{"index":0}}})",
+      R"(,"textures":[{"source":0}])");
   const auto scene = scene_of(model);
   const auto& json = scene["materials"]["material"];
   EXPECT_EQ(json["type"], "coated");
