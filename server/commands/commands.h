@@ -19,6 +19,7 @@ struct Command {
 Command add_render(CLI::App& root);
 Command add_view(CLI::App& root);
 Command add_inspect(CLI::App& root);
+Command add_import(CLI::App& root);
 Command add_orbit(CLI::App& root);
 Command add_serve(CLI::App& root);
 Command add_token(CLI::App& root);

@@ -40,7 +40,7 @@ export const kLayers = [
   ["server/jobs"],
   ["server/app"],
   ["server/routes"],
-  ["server/service"],
+  ["server/service", "server/import"],
   ["server/commands"],
   ["server"], // main.cpp
 ];
