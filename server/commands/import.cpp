@@ -28,39 +28,11 @@ orrery have its shapes, materials, lights and cameras. A warning names each
 kind of thing that is replaced or left out. Meshes and images stay where they
 are, in the folder of the output or below it. Large meshes of the scene, and
 images of the surroundings in other projections, become files beside the
-output: scene-1.ply.
+output: scene-import-1.ply.
 )";
 
 struct ImportFlags {
   std::string scene, output = "-";
-};
-
-// Files of the written scene: those of the description, and those that the conversion made.
-class ImportedAssets final : public AssetSource {
- public:
-  ImportedAssets(const fs::path& folder, const std::vector<ImportedFile>& made)
-      : files_(folder), made_(made) {}
-
-  MeshModelPtr model_file(const std::string& name, const std::optional<ModelPose>& pose) const override {
-    const ImportedFile* const file = find(name);
-    if (file == nullptr) return files_.model_file(name, pose);
-    return std::make_shared<const MeshModel>(read_model(file->bytes, {}, {}, pose));
-  }
-  TexelsPtr picture_file(const std::string& name) const override {
-    const ImportedFile* const file = find(name);
-    if (file == nullptr) return files_.picture_file(name);
-    return std::make_shared<const Texels>(read_picture(file->bytes));
-  }
-
- private:
-  const ImportedFile* find(const std::string& name) const {
-    for (const ImportedFile& file : made_)
-      if (file.name == name) return &file;
-    return nullptr;
-  }
-
-  AssetFiles files_;
-  const std::vector<ImportedFile>& made_;
 };
 
 fs::path folder_of(const std::string& path) {
@@ -72,7 +44,7 @@ fs::path folder_of(const std::string& path) {
 ImportOptions import_options(const ImportFlags& flags) {
   ImportOptions options;
   if (flags.output == "-") return options;
-  options.file_stem = fs::path(flags.output).stem().string() + "-";
+  options.file_stem = fs::path(flags.output).stem().string() + "-import-";
   std::error_code error;
   const fs::path from = fs::canonical(folder_of(flags.output), error);
   if (error) return options;  // require_writable() has reported it
@@ -84,12 +56,15 @@ ImportOptions import_options(const ImportFlags& flags) {
   return options;
 }
 
-// Throws BadScene if the scene is not valid.
-void check_imported(const ImportFlags& flags, const std::string& name, const ImportedScene& imported) {
-  const std::string beside = flags.output == "-" ? flags.scene : flags.output;
+// Writes the files that the conversion made. Removes them unless the scene is valid, and throws BadScene.
+void write_files(const ImportFlags& flags, const std::string& name, const ImportedScene& imported) {
+  const fs::path folder = folder_of(flags.output == "-" ? flags.scene : flags.output);
+  for (const ImportedFile& file : imported.files) write_file((folder / file.name).string(), file.bytes);
   try {
-    load_scene(document_of(imported.scene), ImportedAssets(folder_of(beside), imported.files));
+    load_scene(document_of(imported.scene), AssetFiles(folder));
   } catch (const InputError& error) {
+    std::error_code ignored;
+    for (const ImportedFile& file : imported.files) fs::remove(folder / file.name, ignored);
     throw BadScene(name + ", converted", error);
   }
 }
@@ -106,11 +81,9 @@ int import(const ImportFlags& flags) {
     const Problem& problem = error.problems().front();
     throw BadScene(problem.pointer.empty() ? name : problem.pointer, InputError("", problem.detail));
   }
-  check_imported(flags, name, imported);
+  write_files(flags, name, imported);
   for (const std::string& note : imported.notes)
     std::cerr << "orrery: warning: " << name << ": " << note << "\n";
-  for (const ImportedFile& file : imported.files)
-    write_file((folder_of(flags.output) / file.name).string(), file.bytes);
   write_file(flags.output,
              imported.scene.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   return kDone;

@@ -18,7 +18,7 @@ namespace orrery {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
-constexpr int kMaxRows = 2048;  // of written images
+constexpr int kMaxRows = 2048;  // rows of a written image
 
 struct ImagePoint {
   double u, v;  // 0 to 1, from the upper left

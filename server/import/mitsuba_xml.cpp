@@ -13,7 +13,7 @@
 namespace orrery {
 namespace {
 
-constexpr std::size_t kMaxReplacedBytes = 1'000'000;  // of an attribute after its $names are replaced
+constexpr std::size_t kMaxReplacedBytes = 1'000'000;  // size of an attribute with its $names replaced
 
 // Returns int_ior for intIOR.
 std::string snake_case(std::string_view name) {

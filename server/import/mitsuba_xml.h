@@ -20,8 +20,8 @@ struct MitsubaProperty {
   std::string
       tag;  // float, integer, boolean, string, point, vector, rgb, srgb, spectrum, blackbody, transform
   std::string text;  // attribute "value", or "filename" of a spectrum
-  Affined map = {};  // of a transform; its origin is a point or vector
-  double scale = 1;  // of a blackbody
+  Affined map = {};  // transform, or its origin: point or vector
+  double scale = 1;  // factor of a blackbody
   ImportPlace place = {};
   mutable bool used = false;
 };

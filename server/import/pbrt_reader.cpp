@@ -14,7 +14,7 @@
 namespace orrery {
 namespace {
 
-constexpr std::size_t kMaxAttributeNumbers = 64;  // of a parameter of Attribute, which shapes copy
+constexpr std::size_t kMaxAttributeNumbers = 64;  // shapes copy the parameters of Attribute
 
 class PbrtReader {
  public:

@@ -15,7 +15,7 @@ namespace orrery {
 
 // Material that shapes refer to. Converted when a shape uses it.
 struct PbrtMaterial {
-  std::string name;  // of a named material, otherwise the type
+  std::string name;  // name of a named material, otherwise the type
   std::string type;
   PbrtParameters parameters;
   bool is_converted = false;

@@ -24,7 +24,7 @@ struct PbrtState {
 
 struct PbrtTransform {
   Affined map;
-  double target_distance = 0;  // of LookAt
+  double target_distance = 0;  // distance of the points of LookAt
 };
 
 // Reads the numbers after a transformation directive: LookAt, Translate, Scale, Rotate, Transform or

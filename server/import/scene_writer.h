@@ -56,7 +56,7 @@ class SceneWriter {
   // Adds the objects of a model. REQUIRES: has_model(name).
   void add_instance(const std::string& name, const Affined& map);
 
-  // Adds a file that is written beside the scene, and returns its name. REQUIRES: writes_files().
+  // Adds a file to be written to the folder of the scene, and returns its name. REQUIRES: writes_files().
   std::string add_file(const std::string& ending, std::string bytes);
   bool writes_files() const { return !options_.file_stem.empty(); }
 

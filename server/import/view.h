@@ -9,7 +9,7 @@ struct ImportCamera {
   Affined map = {};          // from camera space to the scene; the length of z is the unit of distances
   Vec3d right, up, forward;  // axes in camera space
   std::string type = "perspective";
-  double half_height = 1;                      // of the view, at distance 1 or of a parallel view
+  double half_height = 1;                      // half the height of the view, at distance 1 if not parallel
   double lens_radius = 0, focus_distance = 0;  // in camera space; 0: pinhole
   double target_distance = 1;                  // in camera space
 };
