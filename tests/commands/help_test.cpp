@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* kCommandNames[] = {"render",    "view",  "inspect", "history", "orbit",  "check",
                                          "explain",   "chart", "audit",   "catalog", "schema", "openapi",
-                                         "stability", "serve", "token",   "help"};
+                                         "stability", "serve", "token",   "import",  "help"};
 constexpr const char* kImageCommands[] = {"render", "view", "history", "orbit", "explain", "chart", "audit"};
 
 struct HelpRun {
