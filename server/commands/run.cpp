@@ -21,8 +21,7 @@ constexpr auto kCommands = {add_render,  add_view,      add_inspect, add_import,
                             add_openapi, add_stability, add_serve,   add_token,  add_help};
 
 constexpr const char* kProgramExamples = R"(
-Examples:
-  orrery render scenes/paper.json -o paper.png
+Example: orrery render scenes/paper.json -o paper.png
 Exit status: 0 success, 1 failure, 2 bad input, 3 missed budget, 130 stopped
 )";
 
