@@ -60,7 +60,7 @@ auto naming_flags(const Make& make) {
           problem.pointer = flag_of(parameter.key);
           is_option = true;
         }
-    if (!is_option) throw;  // of the file
+    if (!is_option) throw;
     throw InputError(std::move(problems));
   }
 }
