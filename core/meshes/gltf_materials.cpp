@@ -64,6 +64,12 @@ class MaterialReader {
     missing_images_.move_to(found_.notes);
     for (const auto& [extension, count] : ignored_textures_)
       found_.notes.push_back(grouped(count) + " textures of " + std::string(extension) + " are not modelled");
+    if (reduced_emissions_ > 0)
+      found_.notes.push_back(grouped(reduced_emissions_) + " materials emit more than " +
+                             text_of(kMaxEmission) + ", which is the limit");
+    if (coats_with_normals_ > 0)
+      found_.notes.push_back(grouped(coats_with_normals_) +
+                             " materials have a clear coat with other normals, which are not modelled");
     if (mixed_sets_ > 0)
       found_.notes.push_back(grouped(mixed_sets_) +
                              " materials use two sets of texture coordinates, of which one is modelled");
@@ -78,8 +84,8 @@ class MaterialReader {
     if (const auto pbr = json.find("pbrMetallicRoughness")) read_pbr(*pbr, material);
     material.emission.factor = color_or(json, "emissiveFactor", Vec3d(0));
     if (const auto strength = extension_of(json, "KHR_materials_emissive_strength"))
-      material.emission.factor =
-          material.emission.factor * number_or(*strength, "emissiveStrength", 1, 0, kMaxEmission);
+      scale_emission(number_or(*strength, "emissiveStrength", 1, 0, std::numeric_limits<double>::max()),
+                     material);
     if (!(material.emission.factor == Vec3d(0)))
       material.emission.texture = read_texture(json, "emissiveTexture");
     if (const auto texture = read_texture(json, "normalTexture"))
@@ -92,6 +98,13 @@ class MaterialReader {
     read_coat(json, material);
     read_sheen(json, material);
     material.unlit = extension_of(json, "KHR_materials_unlit").has_value();
+  }
+
+  void scale_emission(double strength, ModelMaterial& material) {
+    const double largest = max_component(material.emission.factor),
+                 most = kMaxEmission / std::max(largest, 1e-300);
+    if (strength > most) ++reduced_emissions_;
+    material.emission.factor = material.emission.factor * std::min(strength, most);
   }
 
   // The filter per metre is the attenuation colour to the power of 1 / attenuation distance.
@@ -145,8 +158,12 @@ class MaterialReader {
     material.coat.factor = number_or(*coat, "clearcoatFactor", 0, 0, 1);
     if (material.coat.factor > 0) material.coat.texture = read_texture(*coat, "clearcoatTexture");
     material.coat_roughness = number_or(*coat, "clearcoatRoughnessFactor", 0, 0, 1);
-    for (const char* key : {"clearcoatRoughnessTexture", "clearcoatNormalTexture"})
-      ignore_texture(*coat, key, kName);
+    ignore_texture(*coat, "clearcoatRoughnessTexture", kName);
+    const auto image_of = [](const GltfValue& value, const char* key) {
+      const auto use = value.find(key);
+      return use ? std::optional(use->at("index").integer()) : std::nullopt;
+    };
+    if (image_of(json, "normalTexture") != image_of(*coat, "clearcoatNormalTexture")) ++coats_with_normals_;
   }
 
   void read_sheen(const GltfValue& json, ModelMaterial& material) {
@@ -285,7 +302,7 @@ class MaterialReader {
   std::optional<int> uv_set_;  // set of the current material
   NoteList missing_images_{kMaxNotes, " more images are missing"};
   std::map<std::string_view, std::size_t> ignored_textures_;  // by extension
-  std::size_t mixed_sets_ = 0;
+  std::size_t mixed_sets_ = 0, coats_with_normals_ = 0, reduced_emissions_ = 0;
 };
 
 }  // namespace

@@ -75,6 +75,19 @@ TEST(Model, ReadsMaterialsOfGltf) {
   EXPECT_TRUE(paint.unlit);
 }
 
+TEST(Model, ReducesEmissionToLimit) {
+  const auto emission = [](const char* strength) {
+    return three_parts(R"(,"materials":[{},{"emissiveFactor":[1,0.5,0],"extensions":{)"
+                       R"("KHR_materials_emissive_strength":{"emissiveStrength":)" +
+                       std::string(strength) + "}}}]");
+  };
+  EXPECT_EQ(emission("1e6").materials[1].emission.factor, Vec3d(1e6, 5e5, 0));
+  EXPECT_TRUE(emission("1e6").mesh.notes.empty());
+  EXPECT_EQ(emission("3e7").materials[1].emission.factor, Vec3d(1e6, 5e5, 0));
+  EXPECT_THAT(emission("3e7").mesh.notes,
+              ElementsAre("1 materials emit more than 1e+06, which is the limit"));
+}
+
 constexpr const char* kTextured = R"(,"materials":[{},{"pbrMetallicRoughness":{"baseColorTexture":{"index":1,
 "extensions":{"KHR_texture_transform":{"offset":[0.25,0.5],"scale":[2,4]}}},"metallicRoughnessTexture":{"index":0}}}],
 "textures":[{"source":0},{"source":1,"sampler":0}],"samplers":[{"wrapS":33071,"wrapT":33071}],

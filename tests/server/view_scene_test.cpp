@@ -254,7 +254,8 @@ TEST(ViewScene, CoatsMaterials) {
   const MeshModel model = card_model(
       Card(2), 1,
       R"("extensions":{"KHR_materials_clearcoat":{"clearcoatFactor":0.75,"clearcoatRoughnessFactor":0.25,)"
-      R"("clearcoatTexture":{"index":0},"clearcoatNormalTexture":{"index":0}},)"
+      R"("clearcoatTexture":{"index":0},"clearcoatNormalTexture":{"index":0},)"
+      R"("clearcoatRoughnessTexture":{"index":0}},)"
       R"("KHR_materials_sheen":{"sheenColorFactor":[1,0.5,0.25],"sheenColorTexture":{"index":0},)"
       R"("sheenRoughnessFactor":0.5},"KHR_materials_specular":{"specularFactor":0.5,)"
       R"("specularTexture":{"index":0}}})",
@@ -271,8 +272,10 @@ TEST(ViewScene, CoatsMaterials) {
   EXPECT_EQ(scene["textures"][shine]["encoding"], "alpha");
   EXPECT_EQ(scene["textures"][cloth]["encoding"], "srgb");
   EXPECT_EQ(json["normal_reflectance"]["tint"][0], 0.02);
-  EXPECT_EQ(notes_of(model),
-            (std::vector<std::string>{"1 textures of KHR_materials_clearcoat are not modelled"}));
+  EXPECT_EQ(
+      notes_of(model),
+      (std::vector<std::string>{"1 textures of KHR_materials_clearcoat are not modelled",
+                                "1 materials have a clear coat with other normals, which are not modelled"}));
 }
 
 // Returns a model of `count` triangles, each with a material of its own, without names.
