@@ -12,14 +12,20 @@ const Asset& once(std::map<Name, Asset>& assets, const std::type_identity_t<Name
   return known != assets.end() ? known->second : assets.emplace(name, read()).first->second;
 }
 
+// Textures use the images of models in the default state. Other states need none, and a model may have many.
+MeshModelPtr images_if_needed(MeshModelPtr model, const ModelState& state) {
+  return state == ModelState() ? model : without_images(std::move(model));
+}
+
 }  // namespace
 
 MeshModelPtr CachedAssetSource::model_file(const std::string& name, const ModelState& state) const {
-  return once(files_, {name, state}, [&] { return from_.model_file(name, state); });
+  return once(files_, {name, state}, [&] { return images_if_needed(from_.model_file(name, state), state); });
 }
 
 MeshModelPtr CachedAssetSource::model_asset(const std::string& sha256, const ModelState& state) const {
-  return once(assets_, {sha256, state}, [&] { return from_.model_asset(sha256, state); });
+  return once(assets_, {sha256, state},
+              [&] { return images_if_needed(from_.model_asset(sha256, state), state); });
 }
 
 TexelsPtr CachedAssetSource::picture_file(const std::string& name) const {

@@ -134,6 +134,11 @@ inline MeshModelPtr model_of(TriangleMesh mesh) {
   return std::make_shared<const MeshModel>(MeshModel{std::move(mesh), {}, {}});
 }
 
+// Returns the model if it has no images. Otherwise returns a model of its mesh alone.
+inline MeshModelPtr without_images(MeshModelPtr model) {
+  return model->images.empty() ? model : model_of(model->mesh);
+}
+
 // Returns the only part of a mesh without parts.
 MeshPart only_part(const TriangleMesh& mesh);
 

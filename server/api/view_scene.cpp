@@ -272,7 +272,7 @@ void add_light(Json& scene, const MeshModel& model, const ViewOptions& options, 
 // Returns the times of the poses that play an animation of this duration.
 std::vector<double> pose_times(double seconds, std::size_t vertices) {
   constexpr double kPosesPerSecond = 24, kMaxSeconds = 1e6;
-  constexpr std::size_t kMaxPoses = 241, kMaxVertices = 1'000'000;  // in all
+  constexpr std::size_t kMaxPoses = 121, kMaxVertices = 1'000'000;  // in all
   if (!(seconds > 0)) return {0};
   const double last = std::min(seconds, kMaxSeconds);
   const auto wanted = static_cast<std::size_t>(std::ceil(last * kPosesPerSecond)) + 1;
@@ -356,7 +356,7 @@ ModelStates read_states(const ViewOptions& options,
   ModelStates states;
   for (const double time : pose_times(animations[number].seconds, model->mesh.positions.size())) {
     const ModelState state{ModelPose{static_cast<int>(number), time}, rest.variant};
-    states[state] = read(state);
+    states[state] = states.empty() ? read(state) : without_images(read(state));
   }
   return states;
 }

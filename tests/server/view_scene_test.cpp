@@ -183,10 +183,12 @@ TEST(ViewScene, PlaysAnimations) {
   gltf.add<float>({0, 2}, "SCALAR", 5126);
   gltf.add<float>({0, 0, 0, 4, 0, 0}, "VEC3", 5126);
   const std::string glb = test::replaced(
-      gltf.glb(
-          R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],)"
-          R"("animations":[{"name":"slide","samplers":[{"input":2,"output":3}],)"
-          R"("channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}]}])"),
+      gltf.glb(R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,)"
+               R"("material":0}]}],"materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}],)"
+               R"("textures":[{"source":0}],"images":[{"uri":"data:image/png;base64,)" +
+               test::base64_of(Card(2).png()) +
+               R"("}],"animations":[{"name":"slide","samplers":[{"input":2,"output":3}],)"
+               R"("channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}]}])"),
       R"("count":2,"type":"SCALAR"})", R"("count":2,"type":"SCALAR","max":[2]})");
   const auto read = [&](const ModelState& state) {
     return std::make_shared<const MeshModel>(read_model(glb, {}, {}, state));
@@ -195,7 +197,9 @@ TEST(ViewScene, PlaysAnimations) {
   options.orthographic = options.plays = true;
   options.state.pose = ModelPose{0, 0};
   const ModelStates states = read_states(options, read);
-  EXPECT_EQ(states.size(), 49);  // 24 per second
+  ASSERT_EQ(states.size(), 49);  // 24 per second
+  EXPECT_EQ(states.begin()->second->images.size(), 1);
+  EXPECT_TRUE(std::next(states.begin())->second->images.empty());
   const auto scene = view_scene(states, {"file", "model", "Model"}, options, 200, 200);
   ASSERT_EQ(scene["objects"][0]["motion"].size(), 49);
   EXPECT_EQ(scene["objects"][0]["motion"][48]["pose_time"], 2.0);
