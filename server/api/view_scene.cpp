@@ -269,11 +269,10 @@ void add_light(Json& scene, const MeshModel& model, const ViewOptions& options, 
   for (const ModelLight& light : model.lights) scene["lights"].push_back(light_json(light));
 }
 
-// Returns the times of the poses that play an animation of this duration.
+// Returns the times of the poses that play an animation. REQUIRES: the duration is positive.
 std::vector<double> pose_times(double seconds, std::size_t vertices) {
   constexpr double kPosesPerSecond = 24, kMaxSeconds = 1e6;
   constexpr std::size_t kMaxPoses = 121, kMaxVertices = 1'000'000;  // in all
-  if (!(seconds > 0)) return {0};
   const double last = std::min(seconds, kMaxSeconds);
   const auto wanted = static_cast<std::size_t>(std::ceil(last * kPosesPerSecond)) + 1;
   const std::size_t most = std::min(kMaxPoses, kMaxVertices / std::max<std::size_t>(1, vertices));
@@ -353,6 +352,7 @@ ModelStates read_states(const ViewOptions& options,
   if (number >= animations.size())
     throw InputError("/animation", "must be from 0 to " + std::to_string(animations.size() - 1) + " (got " +
                                        std::to_string(number) + ")");
+  if (!(animations[number].seconds > 0)) return {{rest, model}};
   ModelStates states;
   for (const double time : pose_times(animations[number].seconds, model->mesh.positions.size())) {
     const ModelState state{ModelPose{static_cast<int>(number), time}, rest.variant};

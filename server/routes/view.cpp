@@ -1,6 +1,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "core/model/model_images.h"
 #include "core/params/json.h"
 #include "server/api/view_scene.h"
 #include "server/routes/answers.h"
@@ -30,23 +31,29 @@ ViewQuery read_view_query(const Request& request) {
           read_view_options(document_of(std::move(given)))};
 }
 
-const AssetStore::Asset::Mesh& mesh_of(const AssetStore::Asset& asset) {
-  if (const auto* const mesh = std::get_if<AssetStore::Asset::Mesh>(&asset.content)) return *mesh;
-  throw InputError("", "must be an OBJ, PLY, STL, 3MF or glTF file (got an image)");
+void require_mesh(const AssetStore::Asset& asset) {
+  if (!std::holds_alternative<AssetStore::Asset::Mesh>(asset.content))
+    throw InputError("", "must be an OBJ, PLY, STL, 3MF or glTF file (got an image)");
 }
 
+struct ViewOrder {
+  RenderOrder render;
+  std::vector<std::string> notes;  // on the model in the state of the view
+};
 // Orders the image of a stored model.
-RenderOrder make_view_order(App& app, const Caller& caller, ViewQuery query, const std::string& id,
-                            RequestTrace& trace) {
+ViewOrder make_view_order(App& app, const Caller& caller, ViewQuery query, const std::string& id,
+                          RequestTrace& trace) {
   SceneStore::Prepared scene;
+  std::vector<std::string> notes;
   app.read_assets(caller, trace, [&](const AssetSource& assets) {
     const auto [width, height] = view_size(query.request);
     const ModelStates states =
         read_states(query.options, [&](const ModelState& state) { return assets.model_asset(id, state); });
+    notes = notes_of(*states.begin()->second);
     const nlohmann::json json = view_scene(states, {"asset", id, "Model"}, query.options, width, height);
     scene = app.scenes().get(document_of(json), OneModel(states), caller.client);
   });
-  return make_order(std::move(scene), std::move(query.request), FileFormat::png, caller);
+  return {make_order(std::move(scene), std::move(query.request), FileFormat::png, caller), std::move(notes)};
 }
 
 Response post_view(App& app, Request& request) {
@@ -55,15 +62,15 @@ Response post_view(App& app, Request& request) {
   const Caller caller = caller_of(request);
   ViewQuery query = read_view_query(request);  // reports errors before the model is stored
   const AssetStore::AddResult added = app.add_asset("", request.body, caller);
-  const AssetStore::Asset::Mesh& mesh = mesh_of(*added.asset);
-  const RenderOrder order = make_view_order(app, caller, std::move(query), added.id, trace);
+  require_mesh(*added.asset);
+  const auto [order, all_notes] = make_view_order(app, caller, std::move(query), added.id, trace);
   const Rendered rendered = app.renders().render(order, trace);
   Response response = picture_response(kType, rendered, trace);
   set_content_location(response, kType, order.scene->scene(), *rendered.picture, request.prefix);
   response.set("Orrery-Scene-Id", order.scene->scene().id);
   response.set("Orrery-Asset-Id", added.id);
   std::string notes;
-  for (const std::string& note : mesh.notes) notes += (notes.empty() ? "" : "; ") + note;
+  for (const std::string& note : all_notes) notes += (notes.empty() ? "" : "; ") + note;
   if (!notes.empty()) response.set("Orrery-Model-Notes", notes);
   return response.set("Cache-Control", "no-store");
 }
@@ -72,8 +79,9 @@ Response get_view(App& app, Request& request) {
   RequestTrace trace;
   const std::string& id = request.path_value("sha256");
   AssetStore::require_name(id);
-  mesh_of(*app.assets().find(id));  // reports images and missing assets
-  const RenderOrder order = make_view_order(app, caller_of(request), read_view_query(request), id, trace);
+  require_mesh(*app.assets().find(id));  // also reports missing assets
+  const RenderOrder order =
+      make_view_order(app, caller_of(request), read_view_query(request), id, trace).render;
   // A later version may frame and light models in another way, and the asset may be removed.
   return frame_response(app, request, order, trace, "no-cache");
 }
