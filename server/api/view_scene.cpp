@@ -269,14 +269,16 @@ void add_light(Json& scene, const MeshModel& model, const ViewOptions& options, 
   for (const ModelLight& light : model.lights) scene["lights"].push_back(light_json(light));
 }
 
-// Returns the times of the poses that play an animation. REQUIRES: the duration is positive.
+// Returns the times of the poses that play an animation, or none if it has no duration or the model has too
+// many vertices.
 std::vector<double> pose_times(double seconds, std::size_t vertices) {
   constexpr double kPosesPerSecond = 24, kMaxSeconds = 1e6;
   constexpr std::size_t kMaxPoses = 121, kMaxVertices = 1'000'000;  // in all
   const double last = std::min(seconds, kMaxSeconds);
   const auto wanted = static_cast<std::size_t>(std::ceil(last * kPosesPerSecond)) + 1;
   const std::size_t most = std::min(kMaxPoses, kMaxVertices / std::max<std::size_t>(1, vertices));
-  std::vector<double> times(std::max<std::size_t>(2, std::min(wanted, most)));
+  if (!(seconds > 0) || most < 2) return {};
+  std::vector<double> times(std::min(wanted, most));
   for (std::size_t i = 0; i < times.size(); ++i)
     times[i] = last * static_cast<double>(i) / static_cast<double>(times.size() - 1);
   return times;
@@ -352,13 +354,18 @@ ModelStates read_states(const ViewOptions& options,
   if (number >= animations.size())
     throw InputError("/animation", "must be from 0 to " + std::to_string(animations.size() - 1) + " (got " +
                                        std::to_string(number) + ")");
-  if (!(animations[number].seconds > 0)) return {{rest, model}};
   ModelStates states;
-  for (const double time : pose_times(animations[number].seconds, model->mesh.positions.size())) {
-    const ModelState state{ModelPose{static_cast<int>(number), time}, rest.variant};
-    states[state] = states.empty() ? read(state) : without_images(read(state));
+  try {
+    for (const double time : pose_times(animations[number].seconds, model->mesh.positions.size())) {
+      const ModelState state{ModelPose{static_cast<int>(number), time}, rest.variant};
+      const MeshModelPtr posed = read(state);
+      if (posed->mesh.triangles != model->mesh.triangles) return {{rest, model}};  // it turns inside out
+      states[state] = states.empty() ? posed : without_images(posed);
+    }
+  } catch (const InputError&) {
+    return {{rest, model}};
   }
-  return states;
+  return states.empty() ? ModelStates{{rest, model}} : states;
 }
 
 Json view_scene(const ModelStates& states, const ModelReference& reference, const ViewOptions& options,

@@ -55,8 +55,9 @@ Vec3d usual_up(MeshFormat format);
 
 // Reads the model of a view by read(state). If the view plays an animation, reads the poses of its keyframes:
 // up to 24 per second, at most 121, and few enough for a million vertices in all. Images are in the first
-// state only. Otherwise, or if the animation has no duration, reads one state. Throws InputError (pointer
-// "/animation") if the model has other animations, but not the one that the options name.
+// state only. Otherwise reads one state: also if the animation has no duration or invalid poses, or if it
+// mirrors triangles. Throws InputError (pointer "/animation") if the model has other animations, but not the
+// one that the options name.
 ModelStates read_states(const ViewOptions& options,
                         const std::function<MeshModelPtr(const ModelState&)>& read);
 

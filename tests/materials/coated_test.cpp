@@ -12,11 +12,6 @@ namespace {
 
 using Case = Probe<double>::Case;
 
-Case seen_at(double cosine) {
-  Case c;
-  c.direction = -tilted(cosine);
-  return c;
-}
 struct Estimate {
   double mean, standard_error;
 };

@@ -11,12 +11,6 @@ namespace {
 
 using Case = Probe<double>::Case;
 
-Case seen_at(double cosine, double side = 1) {
-  Case c;
-  c.direction = -tilted(cosine);
-  c.side = side;
-  return c;
-}
 Vec3d mean_weight(const Probe<double>& material, const Case& point, int draws = 250'000) {
   Vec3d sum;
   for (const auto& drawn : material.sampled(point, draws)) sum = sum + drawn.weight;

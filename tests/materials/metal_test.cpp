@@ -14,11 +14,6 @@ namespace {
 
 using Case = Probe<double>::Case;
 
-Case seen_at(double cosine) {
-  Case c;
-  c.direction = -tilted(cosine);
-  return c;
-}
 // Returns a metal that absorbs no light: for n = 0, Fresnel's equations give a reflectance of 1.
 Probe<double> perfect_mirror(double alpha) {
   return Probe<double>(

@@ -188,6 +188,22 @@ export const kFeatures = {
   },
   clearcoat: extension("KHR_materials_clearcoat", { clearcoatFactor: 1 }),
   sheen: extension("KHR_materials_sheen", { sheenColorFactor: [1, 1, 1] }),
+  "clearcoat textures": extension("KHR_materials_clearcoat", {
+    clearcoatFactor: 0.5,
+    clearcoatRoughnessFactor: 0.2,
+    clearcoatTexture: texture(),
+    clearcoatRoughnessTexture: texture(),
+  }),
+  "sheen texture": extension("KHR_materials_sheen", {
+    sheenColorFactor: [1, 0.5, 0.2],
+    sheenColorTexture: texture(),
+    sheenRoughnessFactor: 0.4,
+  }),
+  "specular textures": extension("KHR_materials_specular", {
+    specularFactor: 0.5,
+    specularTexture: texture(),
+    specularColorTexture: texture(),
+  }),
   lights: {
     change: (g) => {
       g.extensions = {

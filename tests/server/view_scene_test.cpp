@@ -236,6 +236,34 @@ TEST(ViewScene, PlaysNothingWithoutAnimations) {
   EXPECT_FALSE(scene["objects"][0].contains("pose_time"));
 }
 
+// A triangle that shrinks to nothing and comes back mirrored, one without duration, and one whose keyframes
+// are not ascending are shown at rest.
+TEST(ViewScene, KeepsModelsAtRestWhoseAnimationsCannotBePlayed) {
+  const auto states_of = [](const std::vector<float>& times, const std::string& last) {
+    test::Gltf gltf;
+    gltf.positions({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    gltf.add<float>(times, "SCALAR", 5126);
+    gltf.add<float>({1, 1, 1, -1, 1, 1}, "VEC3", 5126);
+    const std::string glb = test::replaced(
+        gltf.glb(R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
+                 R"("animations":[{"samplers":[{"input":1,"output":2}],)"
+                 R"("channels":[{"sampler":0,"target":{"node":0,"path":"scale"}}]}])"),
+        R"("count":2,"type":"SCALAR"})", R"("count":2,"type":"SCALAR","max":[)" + last + "]}");
+    ViewOptions options;
+    options.plays = true;
+    options.state.pose = ModelPose{0, 0};
+    return read_states(options, [&](const ModelState& state) {
+      return std::make_shared<const MeshModel>(read_model(glb, {}, {}, state));
+    });
+  };
+  for (const ModelStates& states : {states_of({0, 2}, "2"), states_of({0, 2}, "0"), states_of({2, 0}, "2")}) {
+    ASSERT_EQ(states.size(), 1);
+    EXPECT_EQ(states.begin()->first, ModelState());
+    EXPECT_EQ(notes_of(*states.begin()->second),
+              std::vector<std::string>{"the model is at rest, without its animation"});
+  }
+}
+
 TEST(ViewScene, MakesGlassOfTransmittingVolumes) {
   const Card card(2);
   const auto material_of = [&](const std::string& extensions) {

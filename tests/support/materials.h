@@ -73,4 +73,12 @@ class Probe {
 extern template class Probe<float>;
 extern template class Probe<double>;
 
+// Returns a case whose viewer is at an angle to the normal with this cosine.
+inline Probe<double>::Case seen_at(double cosine, double side = 1) {
+  Probe<double>::Case one;
+  one.direction = -tilted(cosine);
+  one.side = side;
+  return one;
+}
+
 }  // namespace orrery::test
