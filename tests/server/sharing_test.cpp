@@ -143,6 +143,7 @@ TEST_F(RunningSharedWork, ChargesRepeatedSubscriptions) {
     const Admission::Subscription visit(admission_, subscribers_, "b");
     timer_.advance(40ms);
   }
+  waiters_.join();  // z has the slot since 50 ms, and its thread must be first in the order
   EXPECT_EQ(order_of({"b", "c"}), (TurnOrder{"z", "c", "b"}));
 }
 
