@@ -22,6 +22,11 @@ struct XmlElement {
       if (key == attribute) return &value;
     return nullptr;
   }
+  // Returns the attribute, or "" if the element lacks it.
+  std::string text(std::string_view attribute) const {
+    const std::string* const found = find(attribute);
+    return found != nullptr ? *found : std::string();
+  }
 };
 
 // Reads a document: see XmlFile for its limits and errors. Throws InputError, Cancelled and std::bad_alloc.

@@ -153,18 +153,14 @@ void add_image_environment(SceneWriter& scene, const ReadNearby& nearby, const s
   const Affined whole = compose(map, layout_map(layout));
   const auto turn = turn_about_y(whole);
   const bool can_stay = turn && is_grey(scale);
-  if (can_stay && layout == EnvironmentLayout::mitsuba) {
+  const auto keep_file = [&] {
     scene.set("environment",
               {{"type", "image"}, {"file", name}, {"rotation_degrees", *turn}, {"scale", scale.x}});
-    return;
-  }
+  };
+  if (can_stay && layout == EnvironmentLayout::mitsuba) return keep_file();
   const Texels image = read_image(scene, nearby, file);
   const bool is_square = layout == EnvironmentLayout::pbrt && image.width == image.height;
-  if (can_stay && !is_square) {
-    scene.set("environment",
-              {{"type", "image"}, {"file", name}, {"rotation_degrees", *turn}, {"scale", scale.x}});
-    return;
-  }
+  if (can_stay && !is_square) return keep_file();
   if (!scene.writes_files()) {
     scene.notes().add("image of the surroundings is replaced by its mean; --output keeps it");
     return add_constant_environment(scene, mean_of(image, is_square) * scale);

@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "core/base/number.h"
-#include "core/base/shorten.h"
 #include "core/base/task_scope.h"
 #include "core/meshes/text.h"
 #include "core/params/params.h"
+#include "server/import/description_files.h"
 
 namespace orrery {
 namespace {
@@ -55,17 +55,15 @@ Vec3d coordinates(const XmlElement& element, const ImportPlace& place, double fa
 }
 
 Vec3d triple(const XmlElement& element, const char* name, const ImportPlace& place) {
-  const std::string* const text = element.find(name);
-  const std::vector<double> n = numbers_of(text != nullptr ? *text : "", place);
+  const std::string text = element.text(name);
+  const std::vector<double> n = numbers_of(text, place);
   if (n.size() != 3)
-    refuse_at(place, std::string(name) + " must have three numbers (got " +
-                         excerpt(text != nullptr ? *text : "") + ")");
+    refuse_at(place, std::string(name) + " must have three numbers (got " + excerpt(text) + ")");
   return {n[0], n[1], n[2]};
 }
 
 Affined matrix(const XmlElement& element, const ImportPlace& place) {
-  const std::string* const text = element.find("value");
-  const std::vector<double> n = numbers_of(text != nullptr ? *text : "", place);
+  const std::vector<double> n = numbers_of(element.text("value"), place);
   if (n.size() == 9) return {{n[0], n[3], 0}, {n[1], n[4], 0}, {0, 0, 1}, {n[2], n[5], 0}};
   if (n.size() != 16)
     refuse_at(place, "matrix must have 9 or 16 numbers (got " + std::to_string(n.size()) + ")");
@@ -82,8 +80,7 @@ Affined step_of(const XmlElement& element, const ImportPlace& place) {
   if (name == "matrix") return matrix(element, place);
   if (name == "rotate") {
     const Vec3d axis = safe_normalize(coordinates(element, place, 0));
-    const std::string* const angle = element.find("angle");
-    const std::vector<double> n = numbers_of(angle != nullptr ? *angle : "", place);
+    const std::vector<double> n = numbers_of(element.text("angle"), place);
     if (axis == Vec3d(0, 0, 0) || n.size() != 1)
       refuse_at(place, "rotate must have an axis that is not 0, and an angle");
     return rotation(axis, std::fmod(n[0], 360));
@@ -121,14 +118,11 @@ std::vector<double> numbers_of(const std::string& text, const ImportPlace& place
 class MitsubaXmlReader {
  public:
   MitsubaXmlReader(MitsubaDocument& document, const ReadNearby& nearby, const ImportLimits& limits)
-      : document_(document), nearby_(nearby), limits_(limits) {}
+      : document_(document), files_(nearby, limits) {}
 
   // Returns the root of a file.
   std::shared_ptr<MitsubaObject> read_file(const std::string& text, const std::string& name) {
-    bytes_ += text.size();
-    if (bytes_ > limits_.bytes)
-      refuse_at({name, 1}, "files of a scene must have at most " + grouped(limits_.bytes) +
-                               " bytes together (got more)");
+    files_.count(text, name);
     XmlElement root;
     try {
       root = read_xml_tree(text, "document", {});
@@ -179,12 +173,9 @@ class MitsubaXmlReader {
     checkpoint();
     const XmlElement own = resolved(element);
     auto object = std::make_shared<MitsubaObject>();
-    const auto text = [&](const char* name) {
-      return own.find(name) != nullptr ? *own.find(name) : std::string();
-    };
     object->tag = own.name == "luminaire" ? "emitter" : own.name == "camera" ? "sensor" : own.name;
-    object->type = text("type");
-    object->id = text("id");
+    object->type = own.text("type");
+    object->id = own.text("id");
     object->place = place_of(own);
     for (const XmlElement& child : element.children) read_member(*object, child);
     if (!object->id.empty()) document_.by_id_[object->id] = object;
@@ -193,26 +184,23 @@ class MitsubaXmlReader {
 
   void read_member(MitsubaObject& parent, const XmlElement& element) {
     const XmlElement own = resolved(element);
-    const auto text = [&](const char* name) {
-      return own.find(name) != nullptr ? *own.find(name) : std::string();
-    };
     const ImportPlace place = place_of(own);
     if (is_object(own)) {
-      parent.children.push_back({snake_case(text("name")), read_object(element), ""});
+      parent.children.push_back({snake_case(own.text("name")), read_object(element), ""});
     } else if (own.name == "ref") {
-      parent.children.push_back({snake_case(text("name")), nullptr, text("id")});
+      parent.children.push_back({snake_case(own.text("name")), nullptr, own.text("id")});
     } else if (own.name == "default") {
-      defaults_.try_emplace(text("name"), text("value"));
+      defaults_.try_emplace(own.text("name"), own.text("value"));
     } else if (own.name == "alias") {
-      const auto found = document_.by_id_.find(text("id"));
+      const auto found = document_.by_id_.find(own.text("id"));
       if (found == document_.by_id_.end())
-        refuse_at(place,
-                  "alias must name an object that is defined before it (got " + excerpt(text("id")) + ")");
-      document_.by_id_[text("as")] = found->second;
+        refuse_at(place, "alias must name an object that is defined before it (got " +
+                             excerpt(own.text("id")) + ")");
+      document_.by_id_[own.text("as")] = found->second;
     } else if (own.name == "include") {
-      include(parent, text("filename"), place);
+      include(parent, own.text("filename"), place);
     } else if (own.name != "path") {
-      parent.properties[snake_case(text("name"))] = property(own, element, place);
+      parent.properties[snake_case(own.text("name"))] = property(own, element, place);
     }
   }
 
@@ -242,33 +230,20 @@ class MitsubaXmlReader {
   }
 
   void include(MitsubaObject& parent, const std::string& name, const ImportPlace& place) {
-    if (++depth_ > limits_.include_depth)
-      refuse_at(place, "includes must be nested at most " + std::to_string(limits_.include_depth) +
-                           " deep (got more: does " + excerpt(name, 80) + " include itself?)");
-    if (++files_ > limits_.files)
-      refuse_at(place, "scene must include at most " + grouped(limits_.files) + " files (got more)");
-    std::string text;
-    try {
-      text = nearby_(name);
-    } catch (const InputError& error) {
-      refuse_at(place, "file " + excerpt(name, 80) + ": " + error.problems().front().detail);
-    }
-    const auto root = read_file(text, name);
+    const auto root = read_file(files_.begin_include(name, place), name);
     if (root->tag == "scene") {
       parent.children.insert(parent.children.end(), root->children.begin(), root->children.end());
       parent.properties.insert(root->properties.begin(), root->properties.end());
     } else {
       parent.children.push_back({"", root, ""});
     }
-    --depth_;
+    files_.end_include();
   }
 
   MitsubaDocument& document_;
-  const ReadNearby& nearby_;
-  const ImportLimits& limits_;
+  DescriptionFiles files_;
   std::string file_;
   std::map<std::string, std::string> defaults_;
-  std::size_t bytes_ = 0, files_ = 0, depth_ = 0;
 };
 
 MitsubaDocument::MitsubaDocument(const std::string& text, const std::string& name, const ReadNearby& nearby,

@@ -149,8 +149,7 @@ class PbrtMaterialReader {
     note_layer();
     p_.ignore({"thickness", "interface.eta", "interface.roughness"});
     pbrt_.notes().add("coat of a conductor is left out");
-    SceneJson json = conductor(p_.find("reflectance") != nullptr ? "" : "conductor.", "conductor.");
-    return json;
+    return conductor(p_.find("reflectance") != nullptr ? "" : "conductor.", "conductor.");
   }
 
   SceneJson diffuse_transmission() {

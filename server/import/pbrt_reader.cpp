@@ -9,6 +9,7 @@
 #include "core/meshes/text.h"
 #include "core/params/params.h"
 #include "core/params/suggest.h"
+#include "server/import/description_files.h"
 #include "server/import/pbrt_state.h"
 
 namespace orrery {
@@ -19,7 +20,10 @@ constexpr std::size_t kMaxAttributeNumbers = 64;  // shapes copy the parameters 
 class PbrtReader {
  public:
   PbrtReader(const ReadNearby& nearby, const ImportOptions& options)
-      : nearby_(nearby), writer_(options), spectra_(nearby_), pbrt_{writer_, spectra_, nearby_} {}
+      : writer_(options),
+        files_(nearby, writer_.limits()),
+        spectra_(nearby),
+        pbrt_{writer_, spectra_, nearby} {}
 
   ImportedScene read(const std::string& text, const std::string& name) {
     writer_.set("title", shortened(as_utf8(name), 100));
@@ -46,10 +50,7 @@ class PbrtReader {
   static const std::array<Directive, 35>& directives();
 
   void read_file(const std::string& text, const std::string& name) {
-    bytes_ += text.size();
-    if (bytes_ > writer_.limits().bytes)
-      refuse_at({name, 1}, "files of a scene must have at most " + grouped(writer_.limits().bytes) +
-                               " bytes together (got more)");
+    files_.count(text, name);
     if (text.starts_with("\x1f\x8b")) refuse_at({name, 1}, "file must not be compressed (got gzip)");
     const bool has_mark = text.starts_with("\xEF\xBB\xBF");
     PbrtLexer lexer(std::string_view(text).substr(has_mark ? 3 : 0), name);
@@ -284,19 +285,8 @@ class PbrtReader {
   }
   void include(PbrtLexer& lexer) {
     const std::string name = quoted(lexer, "name of a file");
-    if (++depth_ > writer_.limits().include_depth)
-      writer_.refuse("includes must be nested at most " + std::to_string(writer_.limits().include_depth) +
-                     " deep (got more: does " + excerpt(name, 80) + " include itself?)");
-    if (++files_ > writer_.limits().files)
-      writer_.refuse("scene must include at most " + grouped(writer_.limits().files) + " files (got more)");
-    std::string text;
-    try {
-      text = nearby_(name);
-    } catch (const InputError& error) {
-      writer_.refuse("file " + excerpt(name, 80) + ": " + error.problems().front().detail);
-    }
-    read_file(text, name);
-    --depth_;
+    read_file(files_.begin_include(name, writer_.place()), name);
+    files_.end_include();
   }
   // The graphics state of an imported file ends with the file.
   void import_file(PbrtLexer& lexer) {
@@ -305,8 +295,8 @@ class PbrtReader {
     state_ = before;
   }
 
-  const ReadNearby& nearby_;
   SceneWriter writer_;
+  DescriptionFiles files_;
   SpectrumFiles spectra_;
   PbrtScene pbrt_;
   PbrtState state_;
@@ -317,7 +307,6 @@ class PbrtReader {
   std::string filter_ = "gaussian";
   Affined mirror_;
   bool in_world_ = false;
-  std::size_t bytes_ = 0, files_ = 0, depth_ = 0;
 };
 
 const std::array<PbrtReader::Directive, 35>& PbrtReader::directives() {

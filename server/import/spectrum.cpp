@@ -6,6 +6,7 @@
 
 #include "core/base/task_scope.h"
 #include "core/meshes/text.h"
+#include "core/model/texture.h"
 
 namespace orrery {
 namespace {
@@ -176,7 +177,7 @@ Vec3d indices_of(const SpectrumTable& spectrum) {
   return {spectrum.at(650), spectrum.at(550), spectrum.at(450)};
 }
 
-double luminance_of(const Vec3d& rgb) { return dot(rgb, Vec3d(0.2126, 0.7152, 0.0722)); }
+double luminance_of(const Vec3d& rgb) { return dot(rgb, channel_weights(TextureChannel::luminance)); }
 
 Vec3d with_unit_luminance(const Vec3d& rgb) {
   const double luminance = luminance_of(rgb);
